@@ -1,0 +1,43 @@
+# Each target makes what it needs first.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
+
+.PHONY: help setup demo test lint bench clean
+
+help: ## what can be made
+	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
+
+setup: $(VENV)/.dev ## everything, into .venv
+
+demo: $(VENV)/.demo ## the station against a simulated line, 24 parts
+	$(BIN)/weldgate-demo
+
+test: lint ## linters, types, import contracts, tests
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/.dev ## ruff, mypy, import contracts
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/.demo ## times of each step on the emulated camera
+	$(BIN)/python -m deploy.bench
+
+clean: ## remove the virtual environment
+	rm -rf $(VENV)
+
+$(VENV)/.system: deploy/system.sh
+	deploy/system.sh
+	$(PYTHON) -m venv $(VENV)
+	touch $@
+
+$(VENV)/.demo: $(VENV)/.system pyproject.toml constraints.txt
+	$(PIP) -e '.[synth]'
+	touch $@
+
+$(VENV)/.dev: $(VENV)/.demo pyproject.toml constraints.txt
+	$(PIP) -e '.[synth,train,dev]'
+	touch $@
