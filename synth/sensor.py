@@ -1,0 +1,27 @@
+"""Radiance to camera counts: exposure, lens blur, vignetting, shot and read noise, clipping, 8 bit."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.optics import Optics
+from synth.part import Part
+
+FULL_WELL_E = 10_000.0
+"""Electrons at grey level 255."""
+NOMINAL_GAIN = 8.0
+"""Grey levels per unit of radiance at exposure 1."""
+
+
+def expose(radiance: NDArray[np.float32], part: Part, optics: Optics, origin_px: tuple[int, int] = (0, 0)) -> NDArray[np.uint8]:
+    """Grey levels (H, W) uint8 of a radiance window whose top left pixel lies at `origin_px` (x, y) of the frame."""
+    rng = np.random.default_rng([part.seed, 7])
+    image = cv2.GaussianBlur(radiance, (0, 0), part.defocus_px)
+    height, width = image.shape
+    x = (np.arange(width) + origin_px[0] - optics.width_px / 2) / optics.focal_px
+    y = (np.arange(height) + origin_px[1] - optics.height_px / 2) / optics.focal_px
+    cos4 = (1.0 / (1.0 + x[None, :] ** 2 + y[:, None] ** 2) ** 2).astype(np.float32)
+    level = np.clip(image * cos4 * (NOMINAL_GAIN * part.exposure), 0, 4 * 255)
+    noise_dn = np.sqrt(level * (255.0 / FULL_WELL_E) + part.read_noise_dn**2, dtype=np.float32)
+    level += noise_dn * rng.standard_normal(level.shape, dtype=np.float32)
+    return np.asarray(np.clip(np.rint(level), 0, 255), np.uint8)
