@@ -1,0 +1,1 @@
+"""From strip to scores to verdict."""

@@ -1,0 +1,122 @@
+"""Networks through onnxruntime; the only file that imports it: 21 crops to class probabilities, a band to ring offsets.
+
+The file carries its own contract in its metadata; a file without it is refused.
+"""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import onnxruntime as ort
+from numpy.typing import NDArray
+
+from station.domain import SEGMENT_PX, Image, SegmentScores
+from station.errors import ModelError
+from station.vision.polar import COLUMNS, ROWS, SECTORS
+
+Array = NDArray[np.float64]
+
+CLASSES = ("ok", "hole", "missing_weld")
+METADATA_KEYS = ("weldgate.classes", "weldgate.thresholds", "weldgate.data_hash", "weldgate.version")
+
+
+@dataclass(frozen=True, slots=True)
+class ModelCard:
+    """What a model file says of itself."""
+
+    version: str
+    data_hash: str
+    """SHA-256 over the training labels."""
+    hole_threshold: float
+    missing_threshold: float
+    file_hash: str
+    """SHA-256 of the file."""
+
+
+class Classifier:
+    """A loaded model. `card` says what it is; calling it judges crops."""
+
+    def __init__(self, path: Path, threads: int = 2) -> None:
+        """Load and warm up. Raises ModelError if the file is missing, damaged or not one of weldgate's."""
+        blob, self._session = _open(path, threads)
+        self.card = _card(path, blob, self._session)
+        self(np.zeros((1, SEGMENT_PX, SEGMENT_PX), np.uint8))
+
+    def __call__(self, crops: Image) -> tuple[SegmentScores, ...]:
+        """Scores of crops (K, 128, 128) uint8. Raises ModelError if the answer is not K finite probabilities."""
+        p = _run(self._session, "probabilities", {"crops": crops[:, None]})
+        if p.shape != (len(crops), 3) or not np.isfinite(p).all() or np.abs(p.sum(axis=1) - 1).max(initial=0) > 1e-3:
+            raise ModelError(f"inference gave no probabilities (shape {p.shape})")
+        return tuple(SegmentScores(float(a), float(b), float(c)) for a, b, c in p)
+
+
+class RingNetwork:
+    """The network that sees where the weld runs in a flattened band (`vision.polar`)."""
+
+    def __init__(self, path: Path, threads: int = 2) -> None:
+        """Load and warm up. Raises ModelError if the file is missing, damaged or another network."""
+        blob, self._session = _open(path, threads)
+        self.file_hash = hashlib.sha256(blob).hexdigest()
+        _check_input(path, self._session, "bands", [1, ROWS, COLUMNS])
+        self(np.zeros((ROWS, COLUMNS), np.uint8))
+
+    def __call__(self, band: Image) -> tuple[Array, Array]:
+        """Offset in px (84,), outwards positive, and presence 0..1 (84,) of each sector of a band (192, 672) uint8."""
+        answer = _run(self._session, "sectors", {"bands": band[None, None]})
+        if answer.shape != (1, 2, SECTORS) or not np.isfinite(answer).all():
+            raise ModelError(f"the ring network gave no offsets (shape {answer.shape})")
+        return answer[0, 0], answer[0, 1]
+
+
+def _open(path: Path, threads: int) -> tuple[bytes, ort.InferenceSession]:
+    try:
+        blob = path.read_bytes()
+    except OSError as error:
+        raise ModelError(f"{path}: model cannot be read ({error.strerror}); name a weldgate .onnx file in the settings") from None
+    options = ort.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 4
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+    try:
+        return blob, ort.InferenceSession(blob, options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
+        raise ModelError(f"{path}: not a readable ONNX model ({str(error).splitlines()[0][:120]}); restore the file") from None
+
+
+def _run(session: ort.InferenceSession, output: str, inputs: dict[str, Image]) -> Array:
+    try:
+        (answer,) = session.run([output], inputs)
+    except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
+        raise ModelError(f"inference failed: {str(error).splitlines()[0][:120]}") from None
+    return np.asarray(answer, np.float64)
+
+
+def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: list[int]) -> None:
+    inputs = session.get_inputs()
+    got = list(inputs[0].shape[1:])
+    if len(inputs) != 1 or inputs[0].name != name or inputs[0].type != "tensor(uint8)" or got != shape:
+        raise ModelError(f"{path}: input is {inputs[0].name} {inputs[0].type} {got}, needed {name} tensor(uint8) {shape}")
+
+
+def _card(path: Path, blob: bytes, session: ort.InferenceSession) -> ModelCard:
+    metadata = session.get_modelmeta().custom_metadata_map
+    missing = [key for key in METADATA_KEYS if key not in metadata]
+    if missing:
+        raise ModelError(f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; export it with weldgate-models export")
+    _check_input(path, session, "crops", [1, SEGMENT_PX, SEGMENT_PX])
+    if "probabilities" not in [o.name for o in session.get_outputs()]:
+        raise ModelError(f"{path}: has no output 'probabilities'")
+    try:
+        classes = tuple(json.loads(metadata["weldgate.classes"]))
+        thresholds = json.loads(metadata["weldgate.thresholds"])
+        hole, gone = float(thresholds["hole"]), float(thresholds["missing_weld"])
+    except (ValueError, KeyError, TypeError):
+        raise ModelError(f"{path}: metadata cannot be read; export it again with weldgate-models export") from None
+    if classes != CLASSES:
+        raise ModelError(f"{path}: classes are {classes}, needed {CLASSES}")
+    if not (0 < hole < 1 and 0 < gone < 1):
+        raise ModelError(f"{path}: thresholds {thresholds} must lie between 0 and 1")
+    return ModelCard(metadata["weldgate.version"], metadata["weldgate.data_hash"], hole, gone, hashlib.sha256(blob).hexdigest())

@@ -1,0 +1,149 @@
+"""The facts that travel through the station: frozen, with units in the names.
+
+Pixels: (x, y), the centre of the image's top left pixel at (0, 0), y down. Angles: degrees, 0 at +x, clockwise as seen
+in the image. Arrays: (row, column).
+"""
+
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.uint8]
+
+SEGMENTS = 21
+SEGMENT_PX = 128
+STRIP_COLUMNS = SEGMENTS * SEGMENT_PX
+STRIP_ROWS = SEGMENT_PX
+SEGMENT_DEG = 360.0 / SEGMENTS
+
+
+class Verdict(StrEnum):
+    """What the station says of a part. ERROR: not inspected; it is never a kind of OK."""
+
+    OK = "OK"
+    NOK = "NOK"
+    ERROR = "ERROR"
+
+
+class Origin(StrEnum):
+    """Where a frame comes from; only `CAMERA` may release a part."""
+
+    CAMERA = "camera"
+    SIMULATED = "simulated"
+    REPLAY = "replay"
+
+
+class Reason(StrEnum):
+    """Why a part is not OK, in words that settings, records, registers and window share."""
+
+    HOLE = "hole"
+    MISSING_WELD = "missing weld"
+    NO_WELD_FOUND = "no weld found"
+    WELD_OUT_OF_VIEW = "weld not wholly in view"
+    WRONG_SIZE = "frame has the wrong size"
+    INCOMPLETE_FRAME = "frame incompletely grabbed"
+    TOO_DARK = "image too dark"
+    TOO_BRIGHT = "image too bright"
+    BLURRED = "image blurred"
+    CAMERA_LOST = "camera lost"
+    NO_FRAME = "no frame in time"
+    DEADLINE = "deadline missed"
+    MODEL_FAILED = "classifier failed"
+    RECORD_FAILED = "record could not be written"
+    ABORTED = "aborted by the PLC"
+    INTERNAL = "internal error"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """One picture as grabbed: `image` (H, W) uint8, never changed afterwards."""
+
+    image: Image
+    grabbed_at: datetime
+    source: str
+    """Camera serial or file name."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """The weld's centre line in frame pixels."""
+
+    center_x_px: float
+    center_y_px: float
+    radius_px: float
+    support: float
+    """Share of the circumference where weld or joint was seen, 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """Image quality on the unwrapped strip."""
+
+    mean_dn: float
+    dark_share: float
+    """Share of pixels at grey level 2 or below."""
+    saturated_share: float
+    sharpness: float
+    """Root mean square of the Laplacian over the mean grey level."""
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentScores:
+    """Probabilities of one segment; they add up to 1."""
+
+    ok: float
+    hole: float
+    missing_weld: float
+
+    @property
+    def nok(self) -> float:
+        """Probability of any defect."""
+        return 1.0 - self.ok
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One defect, merged over neighbouring segments; `end_deg` may exceed 360."""
+
+    kind: Reason
+    start_deg: float
+    end_deg: float
+    length_mm: float
+    score: float
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Milliseconds of each step; None where the step was not reached."""
+
+    grab_ms: float | None = None
+    locate_ms: float | None = None
+    unwrap_ms: float | None = None
+    classify_ms: float | None = None
+    record_ms: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Inspection:
+    """One part as judged. OK only with 21 judged segments."""
+
+    verdict: Verdict
+    reason: Reason | None
+    ring: Ring | None = None
+    quality: Quality | None = None
+    scores: tuple[SegmentScores, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    timing: Timing = field(default_factory=Timing)
+
+    def __post_init__(self) -> None:
+        if self.verdict is Verdict.OK and (len(self.scores) != SEGMENTS or self.ring is None or self.reason is not None):
+            raise ValueError("OK needs a ring, 21 judged segments and no reason against it")
+
+    @staticmethod
+    def error(reason: Reason, ring: Ring | None = None, quality: Quality | None = None, timing: Timing | None = None) -> "Inspection":
+        """A part that could not be judged."""
+        return Inspection(Verdict.ERROR, reason, ring=ring, quality=quality, timing=timing or Timing())

@@ -1,0 +1,66 @@
+"""The station's errors, each with a message that says what, where and what to do.
+
+WeldgateError
+├── SettingsError      a settings file is missing or wrong
+├── ModelError         a model file is missing, damaged or not one of ours
+├── ImageError         an image cannot be read or has the wrong form
+├── CameraError
+│   ├── CameraLost     the camera is absent or stopped answering
+│   ├── FrameTimeout   no frame came in time
+│   └── FrameDamaged   a frame came incomplete or in the wrong size
+├── LocateError        no weld ring, or not wholly in view
+├── RecordError        a record cannot be written or read
+└── LineError          the PLC connection cannot be made
+"""
+
+
+class WeldgateError(Exception):
+    """Any error that a user or operator can act upon; the message is one line."""
+
+
+class SettingsError(WeldgateError):
+    """A settings file is missing or wrong."""
+
+
+class ModelError(WeldgateError):
+    """A model file is missing, damaged, or not one of weldgate's."""
+
+
+class ImageError(WeldgateError):
+    """An image cannot be read or has the wrong form."""
+
+
+class CameraError(WeldgateError):
+    """The camera did not give a usable frame."""
+
+
+class CameraLost(CameraError):
+    """The camera is absent or stopped answering; open it again."""
+
+
+class FrameTimeout(CameraError):
+    """No frame came in time; the camera itself is there."""
+
+
+class FrameDamaged(CameraError):
+    """A frame came incomplete or in the wrong size; it must not be judged."""
+
+    def __init__(self, message: str, wrong_size: bool = False) -> None:
+        super().__init__(message)
+        self.wrong_size = wrong_size
+
+
+class LocateError(WeldgateError):
+    """No weld ring was found, or it is not wholly in view."""
+
+    def __init__(self, message: str, out_of_view: bool = False) -> None:
+        super().__init__(message)
+        self.out_of_view = out_of_view
+
+
+class RecordError(WeldgateError):
+    """A record cannot be written or read."""
+
+
+class LineError(WeldgateError):
+    """The PLC connection cannot be made."""

@@ -1,0 +1,48 @@
+"""Image files to grey pictures and back, lossless."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from station.domain import Image
+from station.errors import ImageError
+
+SUFFIXES = frozenset((".png", ".bmp", ".tif", ".tiff", ".jpg", ".jpeg"))
+MAX_BYTES = 512 * 1024 * 1024
+
+
+def read_image(path: Path) -> Image:
+    """Picture (H, W) uint8. 16-bit pictures keep their upper 8 bits, colour becomes grey.
+
+    Raises ImageError naming the file and what is wrong with it.
+    """
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise ImageError(f"{path}: larger than 512 MiB; not a frame")
+        raw = np.frombuffer(path.read_bytes(), np.uint8)
+    except OSError as error:
+        raise ImageError(f"{path}: cannot be read ({error.strerror})") from None
+    image = None
+    if raw.size:
+        try:
+            image = cv2.imdecode(raw, cv2.IMREAD_UNCHANGED)
+        except cv2.error:
+            image = None
+    if image is None:
+        raise ImageError(f"{path}: not a readable image; PNG, BMP, TIFF or JPEG is needed")
+    if image.ndim == 3:
+        image = cv2.cvtColor(image[:, :, :3], cv2.COLOR_BGR2GRAY)
+    if image.dtype == np.uint16:
+        image = np.asarray(image // 256, np.uint8)
+    if image.dtype != np.uint8:
+        raise ImageError(f"{path}: pixels are {image.dtype}; 8 or 16 bit is needed")
+    return np.ascontiguousarray(image)
+
+
+def encode_png(image: Image) -> bytes:
+    """Lossless PNG, fastest level."""
+    done, buffer = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    if not done:
+        raise ImageError("the frame could not be encoded")
+    return bytes(buffer)

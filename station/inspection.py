@@ -1,0 +1,73 @@
+"""Frame to verdict: locate, unwrap, quality gate, classify, decide. No device, no file."""
+
+from time import perf_counter
+
+from station.classify.decision import Thresholds, findings
+from station.classify.onnx import Classifier, RingNetwork
+from station.domain import Image, Inspection, Reason, Ring, Timing, Verdict
+from station.errors import LocateError, ModelError
+from station.settings import ModelSettings, QualitySettings, WeldSettings
+from station.vision.locate import Expected, locate
+from station.vision.quality import gate, measure
+from station.vision.unwrap import segments, unwrap
+
+
+class Inspector:
+    """Judges frames with one model and one set of limits; the same for line and replay."""
+
+    def __init__(
+        self, ring_network: RingNetwork, classifier: Classifier, weld: WeldSettings, quality: QualitySettings, model: ModelSettings
+    ) -> None:
+        self._ring_network = ring_network
+        self._classifier = classifier
+        self._weld = weld
+        self._quality = quality
+        px_per_mm = 1000.0 / weld.um_per_px
+        self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
+        card = classifier.card
+        self.thresholds = Thresholds(
+            hole=card.hole_threshold if model.hole_threshold is None else model.hole_threshold,
+            missing_weld=card.missing_threshold if model.missing_threshold is None else model.missing_threshold,
+        )
+
+    def locate(self, image: Image) -> Ring:
+        """Ring of the weld in `image` (H, W) uint8. Raises LocateError, ModelError."""
+        return locate(image, self._expected, self._ring_network)
+
+    def inspect(self, image: Image, grab_ms: float | None = None) -> Inspection:
+        """Judge `image` (H, W) uint8. Every way that does not end with 21 judged segments ends in ERROR."""
+        start = perf_counter()
+        try:
+            ring = self.locate(image)
+        except LocateError as error:
+            reason = Reason.WELD_OUT_OF_VIEW if error.out_of_view else Reason.NO_WELD_FOUND
+            return Inspection.error(reason, timing=Timing(grab_ms, _ms(start)))
+        except ModelError:
+            return Inspection.error(Reason.MODEL_FAILED, timing=Timing(grab_ms, _ms(start)))
+        locate_ms, start = _ms(start), perf_counter()
+        strip = unwrap(image, ring)
+        quality = measure(strip)
+        unwrap_ms, start = _ms(start), perf_counter()
+        poor = gate(quality, self._quality)
+        if poor is not None:
+            return Inspection.error(poor, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
+        try:
+            scores = self._classifier(segments(strip))
+        except ModelError:
+            return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
+        radius_mm = ring.radius_px * self._weld.um_per_px / 1000.0
+        found = findings(scores, self.thresholds, radius_mm)
+        worst = max(found, key=lambda f: f.score, default=None)
+        return Inspection(
+            verdict=Verdict.OK if worst is None else Verdict.NOK,
+            reason=None if worst is None else worst.kind,
+            ring=ring,
+            quality=quality,
+            scores=scores,
+            findings=found,
+            timing=Timing(grab_ms, locate_ms, unwrap_ms, _ms(start)),
+        )
+
+
+def _ms(start: float) -> float:
+    return (perf_counter() - start) * 1000.0

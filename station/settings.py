@@ -1,0 +1,154 @@
+"""station.toml as checked values. Relative paths count from the file's folder."""
+
+import tomllib
+from ipaddress import IPv4Address, IPv6Address
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from station.domain import Origin
+from station.errors import SettingsError
+
+Port = Annotated[int, Field(ge=1, le=65535)]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class Section(BaseModel):
+    """Base of all sections: unknown keys are mistakes, values never change."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class PylonSettings(Section):
+    """A Basler camera, real or emulated, through pypylon."""
+
+    kind: Literal["pylon"]
+    device_class: Literal["BaslerGigE", "BaslerCamEmu"] = "BaslerGigE"
+    serial: str = Field(min_length=1)
+    trigger: Literal["software", "line1"] = "software"
+    width_px: int = Field(default=4200, ge=1)
+    height_px: int = Field(default=2160, ge=1)
+    exposure_us: float = Field(default=2000.0, gt=0, le=1_000_000)
+    gain_db: float = Field(default=0.0, ge=0, le=48)
+    timeout_ms: int = Field(default=500, ge=10, le=60_000)
+    reconnect_s: float = Field(default=1.0, ge=0.05, le=60)
+
+    @property
+    def origin(self) -> Origin:
+        """Where this camera's frames come from: an emulated camera's parts carry the SIMULATED flag."""
+        return Origin.SIMULATED if self.device_class == "BaslerCamEmu" else Origin.CAMERA
+
+
+class ReplaySettings(Section):
+    """Recorded images from a folder, in the order of their names, once each."""
+
+    kind: Literal["replay"]
+    folder: Path
+
+    @property
+    def origin(self) -> Origin:
+        """Replayed parts read TEST to the PLC."""
+        return Origin.REPLAY
+
+
+class WeldSettings(Section):
+    """What is known of the weld."""
+
+    radius_mm: float = Field(default=5.564, gt=0)
+    radius_tolerance_mm: float = Field(default=0.156, gt=0)
+    um_per_px: float = Field(default=13.0, gt=0)
+
+
+class QualitySettings(Section):
+    """Limits of the image quality gate, on the strip."""
+
+    min_mean_dn: float = Field(default=12.0, ge=0, le=255)
+    max_dark_share: Share = 0.6
+    max_saturated_share: Share = 0.35
+    min_sharpness: float = Field(default=0.01, ge=0)
+
+
+class ModelSettings(Section):
+    """The networks; without thresholds the classifier file's own are used."""
+
+    path: Path = Path("weldgate.onnx")
+    ring_path: Path = Path("ring.onnx")
+    threads: int = Field(default=2, ge=1, le=64)
+    hole_threshold: Share | None = None
+    missing_threshold: Share | None = None
+
+
+class PlcSettings(Section):
+    """Modbus TCP server that the PLC talks to, and the times of the handshake."""
+
+    host: str = "127.0.0.1"
+    port: Port = 1502
+    deadline_ms: int = Field(default=2000, ge=100, le=60_000)
+    result_ttl_ms: int = Field(default=10_000, ge=100, le=600_000)
+    stuck_ms: int = Field(default=5_000, ge=100, le=600_000)
+    plc_heartbeat_ms: int = Field(default=2_000, ge=0, le=60_000)
+    """PLC_HEARTBEAT must change within this time; 0: not watched."""
+
+
+class ArchiveSettings(Section):
+    """Where records go."""
+
+    folder: Path = Path("records")
+    min_free_mb: int = Field(default=500, ge=1)
+
+
+class ChannelSettings(Section):
+    """Local channel between engine and panel (ZeroMQ); loopback by default."""
+
+    host: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
+    events_port: Port = 15551
+    preview_port: Port = 15552
+
+
+class Settings(Section):
+    """The whole of station.toml."""
+
+    camera: Annotated[PylonSettings | ReplaySettings, Field(discriminator="kind")]
+    weld: WeldSettings = WeldSettings()
+    quality: QualitySettings = QualitySettings()
+    model: ModelSettings = ModelSettings()
+    plc: PlcSettings = PlcSettings()
+    archive: ArchiveSettings = ArchiveSettings()
+    channel: ChannelSettings = ChannelSettings()
+
+
+def load(path: Path) -> Settings:
+    """Settings from a TOML file.
+
+    Raises SettingsError naming the file, the key and what is allowed.
+    """
+    try:
+        with path.open("rb") as file:
+            raw = tomllib.load(file)
+    except FileNotFoundError:
+        raise SettingsError(f"{path}: no such settings file; name one with -c, or copy deploy/station.toml") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{path}: cannot be read: {error}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise SettingsError(f"{path}: not valid TOML: {error}") from None
+    try:
+        settings = Settings.model_validate(raw)
+    except ValidationError as error:
+        raise SettingsError(f"{path}: {_first(error)}") from None
+    return _anchored(settings, path.resolve().parent)
+
+
+def _first(error: ValidationError) -> str:
+    problems = [f"{'.'.join(str(p) for p in e['loc'] if p not in ('pylon', 'replay'))}: {e['msg']}" for e in error.errors()]
+    return "; ".join(problems)
+
+
+def _anchored(settings: Settings, folder: Path) -> Settings:
+    changes: dict[str, Section] = {
+        "model": settings.model.model_copy(update={"path": folder / settings.model.path, "ring_path": folder / settings.model.ring_path}),
+        "archive": settings.archive.model_copy(update={"folder": folder / settings.archive.folder}),
+    }
+    if isinstance(settings.camera, ReplaySettings):
+        changes["camera"] = settings.camera.model_copy(update={"folder": folder / settings.camera.folder})
+    return settings.model_copy(update=changes)

@@ -1,0 +1,33 @@
+"""Is this picture fit to be judged? Exposure and focus on the strip, so that the surroundings do not count."""
+
+import cv2
+import numpy as np
+
+from station.domain import Image, Quality, Reason
+from station.settings import QualitySettings
+
+DARK_DN = 2
+SATURATED_DN = 254
+
+
+def measure(strip: Image) -> Quality:
+    """Image quality of a strip (128, 2688) uint8."""
+    mean_dn = float(strip.mean())
+    laplacian = cv2.Laplacian(strip, cv2.CV_32F)
+    return Quality(
+        mean_dn=mean_dn,
+        dark_share=float(np.mean(strip <= DARK_DN)),
+        saturated_share=float(np.mean(strip >= SATURATED_DN)),
+        sharpness=float(np.sqrt(np.mean(laplacian**2)) / max(mean_dn, 1.0)),
+    )
+
+
+def gate(quality: Quality, limits: QualitySettings) -> Reason | None:
+    """The first reason why the picture must not be judged, or None."""
+    if quality.mean_dn < limits.min_mean_dn or quality.dark_share > limits.max_dark_share:
+        return Reason.TOO_DARK
+    if quality.saturated_share > limits.max_saturated_share:
+        return Reason.TOO_BRIGHT
+    if quality.sharpness < limits.min_sharpness:
+        return Reason.BLURRED
+    return None

@@ -1,0 +1,61 @@
+"""Ring to strip and exactly back. One unwrap serves training, replay and the line.
+
+The strip is (128, 2688) uint8: row 0 outermost, one pixel of the frame a row; column 0 begins at angle 0 (+x) and columns
+run clockwise as seen in the image. With column c and row r (pixel centres):
+
+    angle  = (c + 0.5) * 360 / 2688          degrees
+    radius = ring.radius_px + 63.5 - r       frame pixels
+    x = center_x + radius * cos(angle),  y = center_y + radius * sin(angle)
+"""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from station.domain import SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, STRIP_ROWS, Image, Ring
+from station.errors import LocateError
+
+Points = NDArray[np.float64]
+
+RAD_PER_COLUMN = 2 * np.pi / STRIP_COLUMNS
+MIDDLE_ROW = (STRIP_ROWS - 1) / 2
+
+
+def strip_to_frame(ring: Ring, points: Points) -> Points:
+    """Strip points (K, 2) as (column, row) to frame points (K, 2) as (x, y)."""
+    angle = (points[:, 0] + 0.5) * RAD_PER_COLUMN
+    radius = ring.radius_px + MIDDLE_ROW - points[:, 1]
+    return np.stack([ring.center_x_px + radius * np.cos(angle), ring.center_y_px + radius * np.sin(angle)], axis=1)
+
+
+def frame_to_strip(ring: Ring, points: Points) -> Points:
+    """Frame points (K, 2) as (x, y) to strip points (K, 2) as (column, row); columns in [-0.5, 2687.5)."""
+    dx, dy = points[:, 0] - ring.center_x_px, points[:, 1] - ring.center_y_px
+    angle = np.arctan2(dy, dx) % (2 * np.pi)
+    return np.stack([angle / RAD_PER_COLUMN - 0.5, ring.radius_px + MIDDLE_ROW - np.hypot(dx, dy)], axis=1)
+
+
+def in_view(ring: Ring, width_px: int, height_px: int) -> bool:
+    """Whether the whole strip lies inside an image of that size."""
+    reach = ring.radius_px + STRIP_ROWS / 2
+    return reach <= ring.center_x_px <= width_px - 1 - reach and reach <= ring.center_y_px <= height_px - 1 - reach
+
+
+def unwrap(image: Image, ring: Ring) -> Image:
+    """Strip (128, 2688) uint8 of the ring in `image` (H, W) uint8, cubic interpolation.
+
+    Raises LocateError if the strip is not wholly inside the image.
+    """
+    height, width = image.shape
+    if not in_view(ring, width, height):
+        raise LocateError(f"the ring at ({ring.center_x_px:.0f}, {ring.center_y_px:.0f}) px is not wholly in view", out_of_view=True)
+    angle = (np.arange(STRIP_COLUMNS, dtype=np.float32) + 0.5) * np.float32(RAD_PER_COLUMN)
+    radius = np.float32(ring.radius_px + MIDDLE_ROW) - np.arange(STRIP_ROWS, dtype=np.float32)
+    x = np.float32(ring.center_x_px) + radius[:, None] * np.cos(angle)
+    y = np.float32(ring.center_y_px) + radius[:, None] * np.sin(angle)
+    return np.asarray(cv2.remap(image, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE), np.uint8)
+
+
+def segments(strip: Image) -> Image:
+    """The strip's 21 crops (21, 128, 128) uint8; crop i covers angles [i, i + 1) * 360 / 21 degrees."""
+    return np.ascontiguousarray(strip.reshape(STRIP_ROWS, SEGMENTS, SEGMENT_PX).transpose(1, 0, 2))
