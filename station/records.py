@@ -1,0 +1,63 @@
+"""One inspection on disk. Version 1.
+
+A record is `YYYY-MM-DD/NNNNNNNN.png`, the frame as grabbed, lossless, and `NNNNNNNN.json`, all that led to its verdict;
+the index is `index.sqlite` beside the day folders. Readable with any image viewer and any SQLite tool.
+"""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from pydantic import TypeAdapter
+
+from station.domain import Inspection, Origin, Verdict
+
+FORMAT = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Which software judged, by which model and limits."""
+
+    software: str
+    model_version: str
+    model_hash: str
+    ring_model_hash: str
+    config_crc: int
+    hole_threshold: float
+    missing_threshold: float
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One judged part as kept on disk."""
+
+    inspection_id: int
+    serial: str
+    trigger_id: int
+    grabbed_at: datetime
+    source: str
+    origin: Origin
+    frame_file: str | None
+    """Relative to the archive folder; None if no frame came."""
+    frame_sha256: str | None
+    inspection: Inspection
+    provenance: Provenance
+    format: int = FORMAT
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict as decided; never changed afterwards."""
+        return self.inspection.verdict
+
+
+_ADAPTER = TypeAdapter(Record)
+
+
+def to_json(record: Record) -> bytes:
+    """The record's JSON text."""
+    return _ADAPTER.dump_json(record, indent=1)
+
+
+def from_json(text: bytes) -> Record:
+    """A record from its JSON text. Raises pydantic.ValidationError."""
+    return _ADAPTER.validate_json(text)
