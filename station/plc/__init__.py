@@ -1,0 +1,1 @@
+"""The line behind one port: register map, handshake, Modbus."""

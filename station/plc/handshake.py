@@ -1,0 +1,237 @@
+"""The handshake as a pure state machine: inputs and time in, outputs out. No device, no clock.
+
+    OFFLINE --enabled, healthy, PLC alive--> IDLE
+    IDLE --TRIGGER edge, new id--> WIPED        the old result is gone, TRIGGER_ACK still 0
+    WIPED --next step--> BUSY                   TRIGGER_ACK = 1, inspection starts
+    BUSY --result, deadline or ABORT--> SHOWN   RESULT_VALID = 1
+    SHOWN --RESULT_ACK edge, TTL, or next trigger--> IDLE (or WIPED)
+    any --ENABLE = 0, SET_OFFLINE, PLC silent--> OFFLINE   result wiped
+
+A verdict is shown only for the trigger in work; a result of any other trigger is refused.
+"""
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from station.domain import SEGMENTS, Reason
+from station.plc.port import Health, Result, Trigger
+from station.plc.registers import REASON_CODES, Control, Flags, Offline, VerdictCode
+
+ERROR_DEADLINE = 0x2101
+ERROR_ABORTED = 0x2102
+ERROR_BAD_TRIGGER_ID = 0x2103
+ERROR_STUCK_BIT = 0x2104
+NO_CONTROL = Control(0)
+ALL_SEGMENTS = (1 << SEGMENTS) - 1
+
+
+class Phase(StrEnum):
+    """Where the handshake stands."""
+
+    OFFLINE = "offline"
+    IDLE = "idle"
+    WIPED = "wiped"
+    BUSY = "busy"
+    SHOWN = "shown"
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """Time-outs in seconds."""
+
+    deadline_s: float = 2.0
+    result_ttl_s: float = 10.0
+    stuck_s: float = 5.0
+    plc_heartbeat_s: float = 2.0
+    """0: not watched."""
+    alive_s: float = 3.0
+    """The inspection must have checked in within this time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """What one step sees. `control` and the rest of the command window as read at once."""
+
+    control: Control
+    plc_heartbeat: int
+    trigger_id: int
+    serial: str
+    command: int
+    health: Health
+    health_age_s: float
+    exposure_done_for: int | None = None
+    result: Result | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """All that the handshake remembers."""
+
+    phase: Phase = Phase.OFFLINE
+    control: Control = NO_CONTROL
+    trigger: Trigger | None = None
+    last_id: int = 0
+    trigger_ack: bool = False
+    exposure_done: bool = False
+    missed: bool = False
+    error: bool = False
+    error_code: int = 0
+    cmd_done: bool = False
+    cmd_echo: int = 0
+    result: Result | None = None
+    shown_s: float = 0.0
+    process_ms: int = 0
+    sequence: int = 0
+    heartbeat: int = 0
+    heartbeat_s: float = 0.0
+    plc_heartbeat: int = -1
+    plc_seen_s: float = -1e9
+    trigger_since_s: float = 0.0
+    ack_since_s: float = 0.0
+    stuck: bool = False
+    offline: Offline = Offline.STARTING
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Outcome of one step: the new state, and what to do."""
+
+    state: State
+    start: Trigger | None = None
+    refused: bool = False
+    """The offered result was not shown."""
+    again: bool = False
+    """Step again at once, after publishing."""
+
+
+def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
+    """One step. Publish `status_window.values(step.state, ...)` before acting on the rest of the outcome."""
+    rising = inputs.control & ~state.control
+    s = _clocks(state, inputs, now_s, times)
+    s = replace(s, control=inputs.control)
+    s = _acknowledge(s, inputs, rising, now_s, times)
+    offline = _offline(s, inputs, now_s, times)
+    s = replace(s, offline=offline)
+    start: Trigger | None = None
+    refused = inputs.result is not None
+
+    if offline in (Offline.NOT_ENABLED, Offline.SET_OFFLINE, Offline.PLC_SILENT):
+        s = _wiped(replace(s, phase=Phase.OFFLINE, trigger=None, trigger_ack=False))
+        if rising & Control.TRIGGER:
+            s = replace(s, missed=True)
+        return Step(s, refused=refused)
+
+    if s.phase is Phase.WIPED and s.trigger is not None:
+        start = s.trigger
+        s = replace(s, phase=Phase.BUSY, trigger_ack=True)
+    elif s.phase is Phase.BUSY and s.trigger is not None:
+        s, refused = _busy(s, s.trigger, inputs, rising, now_s, times)
+    elif s.phase is Phase.SHOWN and now_s - s.shown_s > times.result_ttl_s:
+        s = _wiped(replace(s, phase=Phase.IDLE))
+
+    if s.phase is Phase.OFFLINE and offline is Offline.NONE:
+        s = replace(s, phase=Phase.IDLE)
+    elif s.phase is Phase.IDLE and offline is not Offline.NONE:
+        s = replace(s, phase=Phase.OFFLINE)
+    if start is None and rising & Control.TRIGGER:
+        s = _triggered(s, inputs, now_s)
+    return Step(s, start, refused, again=s.phase is Phase.WIPED)
+
+
+def ready(s: State) -> bool:
+    """Whether a trigger would be accepted now."""
+    waiting = not (s.control & Control.RESULT_ACK) or s.stuck
+    return s.offline is Offline.NONE and s.phase in (Phase.IDLE, Phase.SHOWN) and waiting and not s.trigger_ack
+
+
+def _clocks(s: State, inputs: Inputs, now_s: float, times: Times) -> State:
+    if inputs.plc_heartbeat != s.plc_heartbeat:
+        s = replace(s, plc_heartbeat=inputs.plc_heartbeat, plc_seen_s=now_s)
+    if inputs.health_age_s <= times.alive_s and now_s - s.heartbeat_s >= 0.1:
+        s = replace(s, heartbeat=(s.heartbeat + 1) & 0xFFFF, heartbeat_s=now_s)
+    if not (s.control & Control.TRIGGER) and inputs.control & Control.TRIGGER:
+        s = replace(s, trigger_since_s=now_s)
+    if not (s.control & Control.RESULT_ACK) and inputs.control & Control.RESULT_ACK:
+        s = replace(s, ack_since_s=now_s)
+    held = (
+        inputs.control & s.control & Control.TRIGGER
+        and s.phase is not Phase.BUSY
+        and now_s - s.trigger_since_s > max(times.stuck_s, times.deadline_s)
+    ) or (inputs.control & s.control & Control.RESULT_ACK and now_s - s.ack_since_s > times.stuck_s)
+    return replace(s, stuck=bool(held), error_code=ERROR_STUCK_BIT if held else s.error_code)
+
+
+def _acknowledge(s: State, inputs: Inputs, rising: Control, now_s: float, times: Times) -> State:
+    if not inputs.control & Control.TRIGGER or (s.stuck and now_s - s.trigger_since_s > times.stuck_s):
+        s = replace(s, trigger_ack=False)
+    if rising & Control.RESULT_ACK and s.phase is Phase.SHOWN:
+        s = _wiped(replace(s, phase=Phase.IDLE))
+    if rising & Control.CLEAR_ERROR:
+        s = replace(s, error=False, missed=False, error_code=0)
+    if rising & Control.EXEC_COMMAND:
+        clears = inputs.command == 11
+        s = replace(s, cmd_done=True, cmd_echo=inputs.command if clears else 0xFFFF)
+        if clears:
+            s = replace(s, error=False, missed=False, error_code=0)
+    elif not inputs.control & Control.EXEC_COMMAND:
+        s = replace(s, cmd_done=False)
+    return s
+
+
+def _offline(s: State, inputs: Inputs, now_s: float, times: Times) -> Offline:
+    if times.plc_heartbeat_s > 0 and now_s - s.plc_seen_s > times.plc_heartbeat_s:
+        return Offline.PLC_SILENT
+    if inputs.control & Control.SET_OFFLINE:
+        return Offline.SET_OFFLINE
+    if not inputs.control & Control.ENABLE:
+        return Offline.NOT_ENABLED
+    if inputs.health_age_s > times.alive_s and s.phase is not Phase.BUSY:
+        return Offline.STATION_STALLED
+    return Offline.NONE if inputs.health.ready else inputs.health.offline
+
+
+def _busy(s: State, trigger: Trigger, inputs: Inputs, rising: Control, now_s: float, times: Times) -> tuple[State, bool]:
+    if inputs.exposure_done_for == trigger.trigger_id:
+        s = replace(s, exposure_done=True)
+    late = now_s - trigger.accepted_s > times.deadline_s
+    if late or rising & Control.ABORT:
+        why, code = (Reason.DEADLINE, ERROR_DEADLINE) if late else (Reason.ABORTED, ERROR_ABORTED)
+        return _shown(s, _error_result(trigger, REASON_CODES[why], code), trigger, now_s), inputs.result is not None
+    if inputs.result is not None and inputs.result.trigger_id == trigger.trigger_id:
+        return _shown(s, inputs.result, trigger, now_s), False
+    return s, inputs.result is not None
+
+
+def _shown(s: State, result: Result, trigger: Trigger, now_s: float) -> State:
+    failed = result.verdict is VerdictCode.ERROR
+    return replace(
+        s,
+        phase=Phase.SHOWN,
+        result=result,
+        trigger=None,
+        shown_s=now_s,
+        process_ms=min(0xFFFF, int((now_s - trigger.accepted_s) * 1000)),
+        sequence=(s.sequence + 1) & 0xFFFF,
+        error=s.error or failed,
+        error_code=result.error_code if failed else s.error_code,
+    )
+
+
+def _wiped(s: State) -> State:
+    if s.result is None:
+        return s
+    return replace(s, result=None, sequence=(s.sequence + 1) & 0xFFFF)
+
+
+def _triggered(s: State, inputs: Inputs, now_s: float) -> State:
+    if not ready(s):
+        return replace(s, missed=True)
+    if inputs.trigger_id in (0, s.last_id):
+        return replace(s, missed=True, error_code=ERROR_BAD_TRIGGER_ID)
+    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s)
+    s = _wiped(s)
+    return replace(s, phase=Phase.WIPED, trigger=trigger, last_id=inputs.trigger_id, exposure_done=False, missed=False)
+
+
+def _error_result(trigger: Trigger, reason: int, code: int) -> Result:
+    return Result(trigger.trigger_id, trigger.serial, VerdictCode.ERROR, 0, reason, code, (), 0, ALL_SEGMENTS, Flags(0))

@@ -1,0 +1,212 @@
+"""The register map as data; packs and unpacks words. Pure.
+
+Addresses are 0-based PDU addresses; 32-bit values have the high word first; bit address = register * 16 + bit, LSB = 0.
+"""
+
+import struct
+from dataclasses import dataclass
+from enum import IntEnum, IntFlag
+from typing import Literal
+
+from station.domain import SEGMENTS, Reason
+
+Kind = Literal["u16", "u32", "f32", "ascii"]
+Value = int | float | str | tuple[int, ...]
+
+COMMAND_START, COMMAND_WORDS = 0, 23
+STATUS_START, STATUS_WORDS = 100, 76
+TEST_U32, TEST_F32 = 0x12345678, 123.456
+MAP_VERSION = 1
+
+
+class Control(IntFlag):
+    """Bits of CONTROL, written by the PLC."""
+
+    ENABLE = 1
+    TRIGGER = 2
+    RESULT_ACK = 4
+    CLEAR_ERROR = 8
+    EXEC_COMMAND = 16
+    SET_OFFLINE = 32
+    GOLDEN_CHECK = 64
+    ABORT = 128
+
+
+class Status(IntFlag):
+    """Bits of STATUS, written by the station. OK and NOK are antivalent while RESULT_VALID."""
+
+    ONLINE = 1
+    READY = 2
+    TRIGGER_ACK = 4
+    EXPOSURE_DONE = 8
+    BUSY = 16
+    RESULT_VALID = 32
+    OK = 64
+    NOK = 128
+    ERROR = 256
+    MISSED_TRIGGER = 512
+    OVERRUN = 1024
+    CMD_DONE = 2048
+    MAINTENANCE = 4096
+    FUNCTION_CHECK = 8192
+    OUT_OF_SPEC = 16384
+    FAILURE = 32768
+
+
+class Flags(IntFlag):
+    """Bits of FLAGS."""
+
+    SIMULATED = 1
+
+
+class VerdictCode(IntEnum):
+    """Values of VERDICT; 0 means no verdict, as after any watchdog."""
+
+    NONE = 0
+    OK = 1
+    NOK = 2
+    ERROR = 3
+    TEST = 4
+
+
+class Offline(IntEnum):
+    """Values of OFFLINE_REASON: why READY is 0."""
+
+    NONE = 0
+    STARTING = 1
+    NOT_ENABLED = 2
+    SET_OFFLINE = 3
+    CAMERA_LOST = 4
+    ARCHIVE_FULL = 5
+    PLC_SILENT = 6
+    STATION_STALLED = 7
+
+
+REASON_CODES = {reason: code for code, reason in enumerate(Reason, start=1)}
+"""Values of REASON; 0: none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Register:
+    """One entry of the map."""
+
+    address: int
+    name: str
+    kind: Kind
+    meaning: str
+    count: int = 1
+    """Number of values, or of characters for ascii."""
+
+    @property
+    def words(self) -> int:
+        """Registers taken."""
+        return {"u16": self.count, "u32": 2 * self.count, "f32": 2 * self.count, "ascii": self.count // 2}[self.kind]
+
+
+MAP: tuple[Register, ...] = (
+    Register(
+        0,
+        "CONTROL",
+        "u16",
+        "bits ENABLE, TRIGGER (edge), RESULT_ACK, CLEAR_ERROR (edge), EXEC_COMMAND (edge), SET_OFFLINE, GOLDEN_CHECK, ABORT",
+    ),
+    Register(1, "PLC_HEARTBEAT", "u16", "any change counts"),
+    Register(2, "TRIGGER_ID", "u16", "1 to 65535, must differ from the last accepted; 0 is invalid"),
+    Register(3, "COMMAND", "u16", "command code for EXEC_COMMAND"),
+    Register(4, "ARG", "u16", "argument of the command"),
+    Register(5, "PART_SERIAL", "ascii", "part serial, 0-padded, high byte first", 32),
+    Register(21, "PLC_TIME", "u32", "epoch seconds, optional"),
+    Register(100, "STATUS", "u16", "bits, see Status"),
+    Register(101, "HEARTBEAT", "u16", "+1 per 100 ms while the inspection is alive"),
+    Register(102, "SEQ_HEAD", "u16", "record counter"),
+    Register(103, "ACK_TRIGGER_ID", "u16", "last accepted trigger"),
+    Register(104, "RESULT_TRIGGER_ID", "u16", "trigger of this result"),
+    Register(105, "VERDICT", "u16", "0 none, 1 OK, 2 NOK, 3 ERROR, 4 TEST"),
+    Register(106, "VERDICT_INV", "u16", "bitwise complement of VERDICT"),
+    Register(107, "INSPECTION_ID", "u32", "never reused"),
+    Register(109, "REASON", "u16", "why the part is not OK, see the reason table"),
+    Register(110, "ERROR_CODE", "u16", "why there is no verdict, or what the PLC did wrong"),
+    Register(111, "ACTIVE_RECIPE", "u16", "recipe in use"),
+    Register(112, "CONFIG_CRC", "u16", "CRC over model, thresholds and camera settings"),
+    Register(113, "SEG_COUNT", "u16", "number of segments"),
+    Register(114, "SEG_NOK_MASK", "u32", "bit i: segment i is NOK"),
+    Register(116, "SEG_INVALID_MASK", "u32", "bit i: segment i was not judged"),
+    Register(118, "WORST_SEG", "u16", "segment with the highest score"),
+    Register(119, "WORST_SCORE", "u16", "its score x 10000"),
+    Register(120, "T_PROCESS_MS", "u16", "trigger accepted to result, ms"),
+    Register(121, "RESULT_AGE_10MS", "u16", "age of the result, 10 ms"),
+    Register(122, "SERIAL_ECHO", "ascii", "part serial as judged", 32),
+    Register(138, "SEG_SCORE", "u16", "score of each segment x 10000", SEGMENTS),
+    Register(159, "MODE", "u16", "1 PRD, 2 SBY, 3 ENG, 4 SDT, 5 UDT, 6 NST"),
+    Register(160, "OFFLINE_REASON", "u16", "why READY is 0"),
+    Register(161, "CMD_ECHO", "u16", "last command done; 65535: refused"),
+    Register(162, "COUNT_OK", "u32", "parts OK since start"),
+    Register(164, "COUNT_NOK", "u32", "parts NOK since start"),
+    Register(166, "COUNT_ERROR", "u32", "parts not judged since start"),
+    Register(168, "TEST_U32", "u32", "always 16#12345678"),
+    Register(170, "TEST_F32", "f32", "always 123.456"),
+    Register(172, "MAP_VERSION", "u16", "version of this map"),
+    Register(173, "SW_VERSION", "u16", "major * 256 + minor"),
+    Register(174, "FLAGS", "u16", "bit 0 SIMULATED: the picture came from an emulated camera"),
+    Register(175, "SEQ_TAIL", "u16", "equals SEQ_HEAD when the record is complete"),
+)
+BY_NAME = {register.name: register for register in MAP}
+
+
+def pack(register: Register, value: Value) -> list[int]:
+    """Words of one value. Raises ValueError if it does not fit."""
+    if register.kind == "ascii":
+        if not isinstance(value, str):
+            raise ValueError(f"{register.name}: needs text")
+        raw = value.encode("ascii", "replace")
+        if len(raw) > register.count:
+            raise ValueError(f"{register.name}: {len(raw)} characters, at most {register.count}")
+        raw = raw.ljust(register.count, b"\0")
+        return list(struct.unpack(f">{register.words}H", raw))
+    values = value if isinstance(value, tuple) else (value,)
+    if len(values) != register.count or isinstance(value, str):
+        raise ValueError(f"{register.name}: needs {register.count} numbers")
+    code = {"u16": "H", "u32": "I", "f32": "f"}[register.kind]
+    try:
+        raw = struct.pack(f">{register.count}{code}", *values)
+    except struct.error as error:
+        raise ValueError(f"{register.name}: {value} does not fit: {error}") from None
+    return list(struct.unpack(f">{register.words}H", raw))
+
+
+def unpack(register: Register, words: list[int]) -> Value:
+    """Value of one register's words."""
+    raw = struct.pack(f">{register.words}H", *words)
+    if register.kind == "ascii":
+        return raw.split(b"\0", 1)[0].decode("ascii", "replace")
+    code = {"u16": "H", "u32": "I", "f32": "f"}[register.kind]
+    values = struct.unpack(f">{register.count}{code}", raw)
+    return values[0] if register.count == 1 else values
+
+
+def pack_window(start: int, words: int, values: dict[str, Value]) -> list[int]:
+    """Words of a window; names absent from `values` read 0."""
+    window = [0] * words
+    for name, value in values.items():
+        register = BY_NAME[name]
+        at = register.address - start
+        window[at : at + register.words] = pack(register, value)
+    return window
+
+
+def unpack_window(start: int, words: list[int]) -> dict[str, Value]:
+    """Values of all registers that lie wholly in the window."""
+    end = start + len(words)
+    return {
+        r.name: unpack(r, words[r.address - start : r.address - start + r.words])
+        for r in MAP
+        if start <= r.address and r.address + r.words <= end
+    }
+
+
+def number(values: dict[str, Value], name: str) -> int:
+    """A whole number out of an unpacked window."""
+    value = values[name]
+    if not isinstance(value, int):
+        raise ValueError(f"{name} is no whole number")
+    return value

@@ -1,0 +1,70 @@
+"""What the PLC reads for a state of the handshake; pure."""
+
+from station.domain import SEGMENTS
+from station.plc.handshake import ALL_SEGMENTS, Phase, State, ready
+from station.plc.port import Health
+from station.plc.registers import MAP_VERSION, TEST_F32, TEST_U32, Status, Value, VerdictCode
+
+
+def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int]) -> dict[str, Value]:
+    """Values of the whole status window."""
+    shown = s.result if s.phase is Phase.SHOWN else None
+    verdict = VerdictCode.NONE if shown is None else shown.verdict
+    status = Status(0)
+    for bit, on in (
+        (Status.ONLINE, s.phase is not Phase.OFFLINE),
+        (Status.READY, ready(s)),
+        (Status.TRIGGER_ACK, s.trigger_ack),
+        (Status.EXPOSURE_DONE, s.exposure_done),
+        (Status.BUSY, s.phase in (Phase.WIPED, Phase.BUSY)),
+        (Status.RESULT_VALID, shown is not None),
+        (Status.OK, verdict is VerdictCode.OK),
+        (Status.NOK, verdict is VerdictCode.NOK),
+        (Status.ERROR, s.error),
+        (Status.MISSED_TRIGGER, s.missed),
+        (Status.CMD_DONE, s.cmd_done),
+        (Status.MAINTENANCE, s.stuck),
+        (Status.FAILURE, health.failure),
+    ):
+        if on:
+            status |= bit
+    window: dict[str, Value] = {
+        "STATUS": int(status),
+        "HEARTBEAT": s.heartbeat,
+        "SEQ_HEAD": s.sequence,
+        "SEQ_TAIL": s.sequence,
+        "ACK_TRIGGER_ID": s.last_id,
+        "VERDICT": int(verdict),
+        "VERDICT_INV": 0xFFFF ^ int(verdict),
+        "ERROR_CODE": s.error_code,
+        "ACTIVE_RECIPE": 1,
+        "CONFIG_CRC": health.config_crc,
+        "SEG_COUNT": SEGMENTS,
+        "SEG_INVALID_MASK": ALL_SEGMENTS,
+        "MODE": 1 if s.phase is not Phase.OFFLINE else 2,
+        "OFFLINE_REASON": int(s.offline),
+        "CMD_ECHO": s.cmd_echo,
+        "COUNT_OK": counts[0],
+        "COUNT_NOK": counts[1],
+        "COUNT_ERROR": counts[2],
+        "TEST_U32": TEST_U32,
+        "TEST_F32": TEST_F32,
+        "MAP_VERSION": MAP_VERSION,
+        "SW_VERSION": 0x0001,
+    }
+    if shown is not None:
+        worst = max(range(len(shown.seg_scores)), key=lambda i: shown.seg_scores[i], default=0)
+        window |= {
+            "RESULT_TRIGGER_ID": shown.trigger_id,
+            "INSPECTION_ID": shown.inspection_id,
+            "REASON": shown.reason,
+            "SEG_NOK_MASK": shown.seg_nok_mask,
+            "SEG_INVALID_MASK": shown.seg_invalid_mask,
+            "T_PROCESS_MS": s.process_ms,
+            "RESULT_AGE_10MS": min(0xFFFF, int((now_s - s.shown_s) * 100)),
+            "SERIAL_ECHO": shown.serial,
+            "FLAGS": int(shown.flags),
+        }
+        if shown.seg_scores:
+            window |= {"SEG_SCORE": shown.seg_scores, "WORST_SEG": worst, "WORST_SCORE": shown.seg_scores[worst]}
+    return window
