@@ -1,0 +1,184 @@
+"""Command line of the station."""
+
+import argparse
+import asyncio
+import logging
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from station import __version__
+from station.errors import WeldgateError
+
+SETTINGS = Path("station.toml")
+SHIPPED = Path(__file__).resolve().parent.parent / "models" / "shipped"
+"""The networks that come with the station."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; 0 good, 1 something was found wrong, 2 it could not be done."""
+    arguments = _parser().parse_args(argv)
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", stream=sys.stderr)
+    try:
+        return int(arguments.command(arguments))
+    except WeldgateError as error:
+        print(f"weldgate: {error}", file=sys.stderr)
+        return 2
+    except (KeyboardInterrupt, BrokenPipeError):
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="weldgate", description="Inline inspection of circular laser welds.")
+    parser.add_argument("--version", action="version", version=f"weldgate {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def add(name: str, command: object, text: str, settings: bool = True) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=text, description=text)
+        sub.set_defaults(command=command)
+        if settings:
+            sub.add_argument("-c", "--settings", type=Path, default=SETTINGS, metavar="FILE", help="settings file (default: %(default)s)")
+        return sub
+
+    add("run", _run, "start engine and panel")
+    add("engine", _engine, "run the inspection, without a window")
+    add("panel", _panel, "open the operator's window")
+    replay = add("replay", _replay, "judge recorded images again: same code, no PLC", settings=False)
+    replay.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="images or folders")
+    replay.add_argument("-c", "--settings", type=Path, metavar="FILE", help="settings file (default: the shipped limits and model)")
+    replay.add_argument("--json", type=Path, metavar="FILE", help="write all results as JSON")
+    replay.add_argument("--csv", type=Path, metavar="FILE", help="write a table")
+    add("check", _check, "say what is wrong with settings, model, archive, camera and port, and what to do")
+    records = add("records", _records, "list and verify the records of an archive", settings=False)
+    records.add_argument("folder", type=Path, metavar="FOLDER")
+    registers = add("registers", _registers, "print the register map", settings=False)
+    registers.add_argument("--format", choices=("md", "csv"), default="md")
+    line = add("line", _line, "run a simulated line PLC against a station", settings=False)
+    line.add_argument("--host", default="127.0.0.1")
+    line.add_argument("--port", type=int, default=1502)
+    line.add_argument("--parts", type=int, default=24)
+    line.add_argument("--accept-simulated", action="store_true", help="take verdicts on pictures of an emulated camera")
+    return parser
+
+
+def _engine(arguments: argparse.Namespace) -> int:
+    from station.settings import load
+    from station.startup import run_engine
+
+    run_engine(load(arguments.settings))
+    return 0
+
+
+def _panel(arguments: argparse.Namespace) -> int:
+    from station.panel.app import run_panel
+    from station.settings import load
+
+    return run_panel(load(arguments.settings))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from station.settings import load
+
+    load(arguments.settings)
+    module = [sys.executable, "-m", "station"]
+    panel = subprocess.Popen([*module, "panel", "-c", str(arguments.settings)])
+    try:
+        return _engine(arguments)
+    finally:
+        panel.terminate()
+        panel.wait(timeout=10)
+
+
+def _replay(arguments: argparse.Namespace) -> int:
+    from rich.progress import track
+
+    from station.replay import image_files, judge, write_csv, write_json
+    from station.settings import Settings, load
+    from station.startup import load_inspector
+
+    files = image_files(arguments.paths)
+    settings = (
+        load(arguments.settings)
+        if arguments.settings
+        else Settings.model_validate(
+            {"camera": {"kind": "replay", "folder": "."}, "model": {"path": SHIPPED / "weldgate.onnx", "ring_path": SHIPPED / "ring.onnx"}}
+        )
+    )
+    for target in (arguments.json, arguments.csv):
+        if target is not None and not target.resolve().parent.is_dir():
+            raise WeldgateError(f"{target}: its folder does not exist")
+    inspector, _ = load_inspector(settings)
+    base = Path(os.path.commonpath([f.resolve().parent for f in files]))
+    entries: dict[str, dict[str, Any]] = {}
+    bad = 0
+    for file in track(files, description="replay", disable=not sys.stderr.isatty(), transient=True):
+        entries[file.resolve().relative_to(base).as_posix()], problem = judge(inspector, file)
+        if problem is not None:
+            bad += 1
+            print(f"weldgate: {problem}", file=sys.stderr)
+    if arguments.json is not None:
+        write_json(arguments.json, entries)
+    if arguments.csv is not None:
+        write_csv(arguments.csv, entries)
+    verdicts = [e["verdict"] for e in entries.values()]
+    print(f"{len(files)} images: {verdicts.count('OK')} OK, {verdicts.count('NOK')} NOK, {verdicts.count('ERROR')} ERROR")
+    return 1 if bad else 0
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from station.check import check
+
+    problems = 0
+    for name, problem in check(arguments.settings):
+        print(f"{'ok  ' if problem is None else 'BAD '} {name}{'' if problem is None else ': ' + problem}")
+        problems += problem is not None
+    return 1 if problems else 0
+
+
+def _records(arguments: argparse.Namespace) -> int:
+    from station.archive import read_records
+
+    bad = 0
+    for path, record, problem in read_records(arguments.folder):
+        if record is not None:
+            reason = record.inspection.reason or ""
+            print(f"{record.inspection_id:8d}  {record.grabbed_at:%Y-%m-%d %H:%M:%S}  {record.verdict:5}  {record.serial:20}  {reason}")
+        if problem is not None:
+            bad += 1
+            print(f"weldgate: {path}: {problem}", file=sys.stderr)
+    return 1 if bad else 0
+
+
+def _registers(arguments: argparse.Namespace) -> int:
+    from station.plc.document import as_csv, as_markdown
+
+    print(as_markdown() if arguments.format == "md" else as_csv(), end="")
+    return 0
+
+
+def _line(arguments: argparse.Namespace) -> int:
+    from station.plc.simulated_line import SimulatedLine
+
+    async def run() -> int:
+        line = SimulatedLine(arguments.host, arguments.port, arguments.accept_simulated)
+        await line.connect(timeout_s=5)
+        passed = 0
+        for number in range(arguments.parts):
+            answer = await line.inspect(f"LINE-{number:06d}")
+            passed += answer.accepted
+            took = "-" if answer.trigger_to_valid_ms is None else f"{answer.trigger_to_valid_ms:.0f} ms"
+            print(
+                f"{number + 1:4d}  {answer.verdict.name:5}  {'pass' if answer.accepted else 'reject'}  {took:>8}  {answer.refused_by or ''}"
+            )
+        line.close()
+        print(f"{arguments.parts} parts, {passed} passed")
+        return 0
+
+    return asyncio.run(run())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

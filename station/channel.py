@@ -1,0 +1,105 @@
+"""Local channel from engine to panels over ZeroMQ; the only file that imports it.
+
+Events are queued; previews ride a latest-only slot. The engine never waits for a panel, and a panel may come and go.
+"""
+
+from typing import Annotated
+
+import zmq
+from pydantic import Field, TypeAdapter, ValidationError
+
+from station.errors import LineError
+from station.events import Event, PartEvent, Preview, StatusEvent
+from station.settings import ChannelSettings
+
+_EVENTS: TypeAdapter[Event] = TypeAdapter(Annotated[StatusEvent | PartEvent, Field(discriminator="type")])
+_PREVIEW = TypeAdapter(Preview)
+
+
+def _address(settings: ChannelSettings, port: int) -> str:
+    host = f"[{settings.host}]" if settings.host.version == 6 else str(settings.host)
+    return f"tcp://{host}:{port}"
+
+
+class Publisher:
+    """The engine's end. Use from one thread."""
+
+    def __init__(self, settings: ChannelSettings) -> None:
+        """Bind. Raises LineError if a port is taken."""
+        self._context = zmq.Context()
+        self._events = self._socket(1000)
+        self._previews = self._socket(2)
+        for socket, port, key in (
+            (self._events, settings.events_port, "events_port"),
+            (self._previews, settings.preview_port, "preview_port"),
+        ):
+            try:
+                socket.bind(_address(settings, port))
+            except zmq.ZMQError as error:
+                self.close()
+                raise LineError(f"channel cannot listen on {_address(settings, port)} ({error}); free it or set channel.{key}") from None
+
+    def _socket(self, high_water: int) -> "zmq.Socket[bytes]":
+        socket = self._context.socket(zmq.PUB)
+        socket.setsockopt(zmq.SNDHWM, high_water)
+        socket.setsockopt(zmq.LINGER, 0)
+        return socket
+
+    def send(self, event: Event) -> None:
+        """Queue an event; dropped for a panel that is 1000 behind."""
+        self._events.send(_EVENTS.dump_json(event))
+
+    def show(self, preview: Preview) -> None:
+        """Offer a picture; dropped for a panel that is behind."""
+        self._previews.send(_PREVIEW.dump_json(preview))
+
+    def close(self) -> None:
+        """Close both sockets."""
+        self._context.destroy(linger=0)
+
+
+class Subscriber:
+    """A panel's end; connects and reconnects by itself. Use from one thread."""
+
+    def __init__(self, settings: ChannelSettings) -> None:
+        self._context = zmq.Context()
+        self._events = self._socket(settings, settings.events_port, latest_only=False)
+        self._previews = self._socket(settings, settings.preview_port, latest_only=True)
+
+    def _socket(self, settings: ChannelSettings, port: int, latest_only: bool) -> "zmq.Socket[bytes]":
+        socket = self._context.socket(zmq.SUB)
+        if latest_only:
+            socket.setsockopt(zmq.CONFLATE, 1)
+        socket.setsockopt(zmq.RECONNECT_IVL_MAX, 1000)
+        socket.setsockopt(zmq.SUBSCRIBE, b"")
+        socket.connect(_address(settings, port))
+        return socket
+
+    def events(self) -> list[Event]:
+        """All events that have come; those of another version are dropped."""
+        found: list[Event] = []
+        while (raw := self._receive(self._events)) is not None:
+            try:
+                found.append(_EVENTS.validate_json(raw))
+            except ValidationError:
+                continue
+        return found
+
+    def preview(self) -> Preview | None:
+        """The newest picture, if a new one has come."""
+        raw = self._receive(self._previews)
+        try:
+            return None if raw is None else _PREVIEW.validate_json(raw)
+        except ValidationError:
+            return None
+
+    @staticmethod
+    def _receive(socket: "zmq.Socket[bytes]") -> bytes | None:
+        try:
+            return socket.recv(zmq.NOBLOCK)
+        except zmq.Again:
+            return None
+
+    def close(self) -> None:
+        """Close both sockets."""
+        self._context.destroy(linger=0)

@@ -1,0 +1,1 @@
+"""The operator's window; the only room that knows Qt."""

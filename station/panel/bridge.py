@@ -1,0 +1,41 @@
+"""From the engine's channel to Qt signals: the only crossing. Polls on the window's own thread, never waits."""
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from station.channel import Subscriber
+from station.events import PartEvent, StatusEvent
+
+POLL_MS = 30
+
+
+class Bridge(QObject):
+    """Emits what the engine says."""
+
+    status = Signal(object)
+    """StatusEvent"""
+    part = Signal(object)
+    """PartEvent"""
+    preview = Signal(object)
+    """Preview"""
+
+    def __init__(self, subscriber: Subscriber) -> None:
+        super().__init__()
+        self._subscriber = subscriber
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._poll)
+        self._timer.start(POLL_MS)
+
+    def _poll(self) -> None:
+        for event in self._subscriber.events():
+            if isinstance(event, StatusEvent):
+                self.status.emit(event)
+            elif isinstance(event, PartEvent):
+                self.part.emit(event)
+        preview = self._subscriber.preview()
+        if preview is not None:
+            self.preview.emit(preview)
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._timer.stop()
+        self._subscriber.close()
