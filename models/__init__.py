@@ -1,0 +1,1 @@
+"""Learns from recorded or rendered parts; ships one file."""
