@@ -1,0 +1,298 @@
+"""weldgate-demo: emulated camera, rendered parts, simulated line and the station, with one command.
+
+The station runs unmodified in its own process: production camera code, production Modbus code.
+"""
+
+import argparse
+import asyncio
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+import cv2
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from station.domain import Verdict
+from station.errors import WeldgateError
+from station.plc.registers import REASON_CODES, VerdictCode
+from station.plc.simulated_line import Answer, SimulatedLine
+from synth.errors import SynthError
+from synth.feed import Feed
+
+HERE = Path(__file__).resolve().parent
+SHIPPED = HERE / "frames"
+SERIAL = "0815-0000"
+REASONS = {code: str(reason) for reason, code in REASON_CODES.items()}
+RENDER_PATIENCE_S = 120.0
+
+
+@dataclass(frozen=True, slots=True)
+class DemoPart:
+    """One frame with known truth."""
+
+    name: str
+    path: Path
+    truth: str
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What the line got for one part."""
+
+    part: DemoPart
+    answer: Answer
+
+    @property
+    def verdict(self) -> str:
+        """OK only if the PLC accepted the part by all points of its rule."""
+        if self.answer.accepted:
+            return Verdict.OK
+        return Verdict.NOK if self.answer.verdict is VerdictCode.NOK else Verdict.ERROR
+
+    @property
+    def escape(self) -> bool:
+        """A defective part released."""
+        return self.part.truth != "OK" and self.verdict == Verdict.OK
+
+    @property
+    def false_reject(self) -> bool:
+        """A good part refused."""
+        return self.part.truth == "OK" and self.verdict == Verdict.NOK
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the demo; 0 if every part was judged and none escaped, 1 if not, 2 if it could not run."""
+    parser = argparse.ArgumentParser(prog="weldgate-demo", description="The whole station against a simulated line, on rendered parts.")
+    parser.add_argument("--headless", action="store_true", help="no window, even if there is a display")
+    parser.add_argument("--parts", type=int, default=24, help="number of parts (default: %(default)s)")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the results")
+    parser.add_argument("--records", type=Path, default=Path("demo-records"), metavar="DIR", help="where records go (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=7, help="seed of the freshly rendered parts (default: %(default)s)")
+    parser.add_argument(
+        "--pace", type=float, default=0.0, metavar="S", help="seconds between parts (default: as fast as it goes; 2 with a window)"
+    )
+    arguments = parser.parse_args(argv)
+    if arguments.parts < 1:
+        parser.error("--parts must be at least 1")
+    if arguments.json is not None and not arguments.json.resolve().parent.is_dir():
+        parser.error(f"--json {arguments.json}: its folder does not exist")
+    try:
+        return _run(arguments, Console())
+    except (WeldgateError, SynthError) as error:
+        print(f"weldgate-demo: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+
+
+def _run(arguments: argparse.Namespace, console: Console) -> int:
+    window = not arguments.headless and _has_display()
+    pace_s = arguments.pace or (2.0 if window else 0.0)
+    records = arguments.records.resolve()
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="weldgate-")))
+        feed = Feed(folder / "feed", SERIAL)
+        plc_port, events_port, preview_port = free_ports(3)
+        settings = folder / "station.toml"
+        settings.write_text(_settings(records, plc_port, events_port, preview_port))
+        log = stack.enter_context((folder / "engine.log").open("w"))
+        fresh = max(0, arguments.parts - len(shipped_parts()))
+        renderer = stack.enter_context(_renderer(folder / "fresh", fresh, arguments.seed)) if fresh else None
+        environment = {**os.environ, **feed.environment}
+        engine = stack.enter_context(_process([sys.executable, "-m", "station", "engine", "-c", str(settings)], environment, log))
+        if window:
+            stack.enter_context(_process([sys.executable, "-m", "station", "panel", "-c", str(settings)], dict(os.environ), log))
+        parts = _parts(arguments.parts, folder / "fresh", renderer, console)
+        judged = asyncio.run(_drive(plc_port, feed, parts, engine, folder / "engine.log", pace_s, console))
+    return _summary(judged, arguments, records, console)
+
+
+def shipped_parts() -> list[DemoPart]:
+    """The few rendered frames that come with the project."""
+    labels = json.loads((SHIPPED / "labels.json").read_text())["frames"]
+    return [DemoPart(Path(item["frame"]).stem, SHIPPED / item["frame"], item["truth"]) for item in labels]
+
+
+def free_ports(count: int) -> list[int]:
+    """Ports that the system has free on loopback."""
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(closing(socket.socket())) for _ in range(count)]
+        for entry in sockets:
+            entry.bind(("127.0.0.1", 0))
+        return [int(entry.getsockname()[1]) for entry in sockets]
+
+
+def _has_display() -> bool:
+    return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def _settings(records: Path, plc_port: int, events_port: int, preview_port: int) -> str:
+    shipped = HERE.parent / "models" / "shipped"
+    return f"""
+[camera]
+kind = "pylon"
+device_class = "BaslerCamEmu"
+serial = "{SERIAL}"
+[model]
+path = {json.dumps(str(shipped / "weldgate.onnx"))}
+ring_path = {json.dumps(str(shipped / "ring.onnx"))}
+[plc]
+port = {plc_port}
+[archive]
+folder = {json.dumps(str(records))}
+[channel]
+events_port = {events_port}
+preview_port = {preview_port}
+"""
+
+
+@contextmanager
+def _process(command: list[str], environment: dict[str, str], log: object) -> "Iterator[subprocess.Popen[bytes]]":
+    process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=HERE.parent)  # type: ignore[call-overload]
+    try:
+        yield process
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+            try:
+                process.wait(timeout=10)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+@contextmanager
+def _renderer(out: Path, count: int, seed: int) -> "Iterator[subprocess.Popen[bytes]]":
+    command = [sys.executable, "-m", "synth", "part", "--out", str(out), "--count", str(count), "--seed", str(seed)]
+    with _process(command, dict(os.environ), subprocess.DEVNULL) as process:
+        yield process
+
+
+def _parts(count: int, fresh: Path, renderer: "subprocess.Popen[bytes] | None", console: Console) -> Iterator[DemoPart]:
+    """Shipped frames first, then fresh ones as they come."""
+    shipped = shipped_parts()[:count]
+    yield from shipped
+    seen: set[str] = set()
+    wanted = count - len(shipped)
+    while len(seen) < wanted:
+        waited_s = time.monotonic()
+        with console.status(f"rendering part {len(seen) + 1} of {wanted}") as status:
+            while not (ready := sorted(p for p in (fresh / "frames").glob("part_*.json") if p.stem not in seen)):
+                dead = renderer is None or renderer.poll() is not None
+                late = time.monotonic() - waited_s > RENDER_PATIENCE_S
+                if late or (dead and not any(p.stem not in seen for p in (fresh / "frames").glob("part_*.json"))):
+                    raise SynthError("the renderer stopped; run 'weldgate-synth part --out DIR --count 1' to see why")
+                status.update(f"rendering part {len(seen) + 1} of {wanted}  {_bar(len(seen), wanted)}")
+                time.sleep(0.05)
+        for path in ready:
+            seen.add(path.stem)
+            yield DemoPart(path.stem, path.with_suffix(".png"), json.loads(path.read_text())["truth"])
+
+
+def _bar(done: int, of: int) -> str:
+    filled = round(20 * done / of)
+    return "█" * filled + "░" * (20 - filled)
+
+
+async def _drive(
+    port: int, feed: Feed, parts: Iterator[DemoPart], engine: "subprocess.Popen[bytes]", log: Path, pace_s: float, console: Console
+) -> list[Judged]:
+    line = SimulatedLine("127.0.0.1", port, accept_simulated=True)
+    judged: list[Judged] = []
+    try:
+        first = True
+        for part in parts:
+            image = cv2.imread(str(part.path), cv2.IMREAD_GRAYSCALE)
+            if image is None:
+                raise SynthError(f"{part.path}: not a readable image; restore it from the repository")
+            feed.show(np.asarray(image, np.uint8))
+            if first:
+                await line.connect()
+                if not await line.wait_ready(15.0):
+                    raise WeldgateError(f"the engine did not become ready: {_last_line(log)}")
+                first = False
+            if engine.poll() is not None:
+                raise WeldgateError(f"the engine stopped: {_last_line(log)}")
+            judged.append(Judged(part, await line.inspect(part.name)))
+            _tell(judged, console)
+            await asyncio.sleep(pace_s)
+    finally:
+        line.close()
+    return judged
+
+
+def _last_line(log: Path) -> str:
+    lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
+    return lines[-1] if lines else "it said nothing"
+
+
+def _tell(judged: list[Judged], console: Console) -> None:
+    last = judged[-1]
+    style = {"OK": "green", "NOK": "red"}.get(last.verdict, "yellow")
+    mark = "[bold red]ESCAPE[/]" if last.escape else "[yellow]false reject[/]" if last.false_reject else ""
+    took = "-" if last.answer.trigger_to_valid_ms is None else f"{last.answer.trigger_to_valid_ms:.0f} ms"
+    reason = REASONS.get(last.answer.reason, last.answer.refused_by if last.verdict == "ERROR" else "") or ""
+    console.print(
+        f"{len(judged):4d}  {last.part.name:16}  is {last.part.truth:13} judged [{style}]{last.verdict:5}[/] {reason:14} {took:>8}  {mark}"
+    )
+
+
+def _summary(judged: list[Judged], arguments: argparse.Namespace, records: Path, console: Console) -> int:
+    escapes = sum(j.escape for j in judged)
+    false_rejects = sum(j.false_reject for j in judged)
+    errors = sum(j.verdict == Verdict.ERROR for j in judged)
+    incomplete = sum(not j.answer.handshake_complete for j in judged)
+    times = sorted(j.answer.trigger_to_valid_ms for j in judged if j.answer.trigger_to_valid_ms is not None)
+    right = len(judged) - escapes - false_rejects - errors
+    table = Table(title="weldgate demo", show_header=False)
+    for name, value in (
+        ("parts", str(len(judged))),
+        ("right verdicts", str(right)),
+        ("wrong verdicts", str(escapes + false_rejects)),
+        ("  escapes", str(escapes)),
+        ("  false rejects", str(false_rejects)),
+        ("not judged (ERROR)", str(errors)),
+        ("handshakes complete", f"{len(judged) - incomplete} of {len(judged)}"),
+        ("trigger to RESULT_VALID", f"median {median(times):.0f} ms, worst {times[-1]:.0f} ms" if times else "-"),
+        ("records", str(records)),
+    ):
+        table.add_row(name, value)
+    console.print(table)
+    if arguments.json is not None:
+        report = {
+            "parts": [
+                {
+                    "part": j.part.name,
+                    "truth": j.part.truth,
+                    "verdict": j.verdict,
+                    "reason": REASONS.get(j.answer.reason),
+                    "trigger_to_valid_ms": j.answer.trigger_to_valid_ms,
+                }
+                for j in judged
+            ],
+            "escapes": escapes,
+            "false_rejects": false_rejects,
+            "errors": errors,
+            "handshakes_complete": len(judged) - incomplete,
+            "records": str(records),
+        }
+        part = arguments.json.with_name(arguments.json.name + ".part")
+        part.write_text(json.dumps(report, indent=1))
+        part.replace(arguments.json)
+    return 1 if escapes or errors or incomplete or len(judged) != arguments.parts else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
