@@ -1,0 +1,42 @@
+"""Guards: emulated camera and offscreen window before anything is imported; nothing left running."""
+
+import os
+
+os.environ["PYLON_CAMEMU"] = "1"
+os.environ["QT_QPA_PLATFORM"] = "offscreen"
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from station.domain import Image
+from station.imagefile import read_image
+from tests.parts import FRAMES, labels
+
+ROOT = Path(__file__).resolve().parent.parent
+RING_MODEL = ROOT / "models" / "shipped" / "ring.onnx"
+MODEL = ROOT / "models" / "shipped" / "weldgate.onnx"
+
+
+@pytest.fixture(autouse=True)
+def _nothing_left_running() -> Iterator[None]:
+    before = set(threading.enumerate())
+    yield
+    left = [t for t in threading.enumerate() if t not in before and t.is_alive()]
+    for thread in left:
+        thread.join(timeout=2)
+    assert not [t.name for t in left if t.is_alive()]
+
+
+@pytest.fixture(scope="session")
+def frames() -> dict[str, Image]:
+    """The shipped frames by name."""
+    return {item["frame"]: read_image(FRAMES / item["frame"]) for item in labels()}
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(0)

@@ -1,0 +1,200 @@
+"""What every camera must do, run over all of them."""
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from station.camera.port import Camera
+from station.camera.pylon import PylonCamera
+from station.camera.replay import ReplayCamera
+from station.domain import Image, Origin
+from station.errors import CameraLost, FrameDamaged, FrameTimeout
+from station.settings import PylonSettings, ReplaySettings
+from synth.feed import Feed
+
+Make = Callable[[list[Image]], Camera]
+SMALL = {"width_px": 1280, "height_px": 1040}
+
+
+def picture(level: int) -> Image:
+    image = np.full((1040, 1280), level, np.uint8)
+    image[0, 0] = 7
+    return image
+
+
+class Fed(PylonCamera):
+    """The production camera with a feed that shows the next picture before each grab."""
+
+    def __init__(self, feed: Feed, images: list[Image]) -> None:
+        super().__init__(PylonSettings(kind="pylon", device_class="BaslerCamEmu", serial="0815-0000", timeout_ms=400, **SMALL))
+        self.feed, self.images = feed, images
+
+    def grab(self):  # type: ignore[no-untyped-def]
+        if self.images:
+            self.feed.show(self.images.pop(0))
+        return super().grab()
+
+
+@pytest.fixture(params=["pylon", "replay"])
+def make(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Make]:
+    made: list[Camera] = []
+
+    def build(images: list[Image]) -> Camera:
+        if request.param == "pylon":
+            feed = Feed(tmp_path / "feed")
+            for name, value in feed.environment.items():
+                monkeypatch.setenv(name, value)
+            camera: Camera = Fed(feed, list(images))
+        else:
+            folder = tmp_path / "images"
+            folder.mkdir()
+            for index, image in enumerate(images):
+                cv2.imwrite(str(folder / f"{index:03d}.png"), image)
+            camera = ReplayCamera(ReplaySettings(kind="replay", folder=folder))
+        made.append(camera)
+        return camera
+
+    yield build
+    for camera in made:
+        camera.close()
+
+
+def test_each_trigger_gives_the_next_picture_to_the_pixel(make: Make) -> None:
+    images = [picture(level) for level in (10, 200, 90)]
+    camera = make(images)
+    camera.open()
+    for wanted in images:
+        frame = camera.grab()
+        assert (frame.image == wanted).all()
+        assert frame.image.dtype == np.uint8
+        assert frame.origin is not Origin.CAMERA
+        assert frame.grabbed_at.tzinfo is not None
+        assert frame.source
+
+
+def test_frames_are_their_own(make: Make) -> None:
+    camera = make([picture(10), picture(200)])
+    camera.open()
+    first = camera.grab()
+    camera.grab()
+    assert first.image[5, 5] == 10
+
+
+def test_grab_before_open_is_lost(make: Make) -> None:
+    with pytest.raises(CameraLost):
+        make([picture(1)]).grab()
+
+
+def test_alive_says_whether_it_can_grab(make: Make) -> None:
+    camera = make([picture(1), picture(2)])
+    assert not camera.alive()
+    camera.open()
+    assert camera.alive()
+
+
+def test_close_twice_and_open_again(make: Make) -> None:
+    camera = make([picture(1), picture(2)])
+    camera.open()
+    camera.grab()
+    camera.close()
+    camera.close()
+    camera.open()
+    assert camera.grab().image[5, 5] == 2
+
+
+# What only the emulated camera can show
+
+
+@pytest.fixture
+def fed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Fed]:
+    feed = Feed(tmp_path / "feed")
+    for name, value in feed.environment.items():
+        monkeypatch.setenv(name, value)
+    camera = Fed(feed, [])
+    yield camera
+    camera.close()
+
+
+def test_a_withdrawn_picture_is_a_damaged_frame_and_the_camera_goes_on(fed: Fed) -> None:
+    fed.open()
+    fed.feed.show(picture(3))
+    fed.grab()
+    fed.feed.withdraw()
+    with pytest.raises(FrameDamaged):
+        fed.grab()
+    fed.feed.show(picture(4))
+    assert fed.grab().image[5, 5] == 4
+
+
+def test_an_incomplete_frame_is_never_given(fed: Fed) -> None:
+    fed.open()
+    fed.feed.show(picture(3))
+    assert fed._camera is not None
+    fed._camera.ForceFailedBufferCount.Value = 1
+    fed._camera.ForceFailedBuffer.Execute()
+    with pytest.raises(FrameDamaged, match="incompletely"):
+        fed.grab()
+    assert fed.grab().image[5, 5] == 3
+
+
+def test_a_frame_of_another_size_is_never_given(fed: Fed) -> None:
+    fed.open()
+    fed.feed.show(picture(3)[:1000, :1200])
+    with pytest.raises(FrameDamaged, match="1200 x 1000") as caught:
+        fed.grab()
+    assert caught.value.wrong_size
+
+
+def test_a_transport_error_is_camera_lost_and_open_mends_it(fed: Fed) -> None:
+    fed.open()
+    fed.feed.show(picture(3))
+    assert fed._camera is not None
+    fed._camera.StreamGrabber.ImposedError.Value = "cable pulled"
+    with pytest.raises(CameraLost, match="cable pulled"):
+        fed.grab()
+    assert not fed.alive()
+    fed.open()
+    assert fed.grab().image[5, 5] == 3
+
+
+def test_no_edge_on_the_line_is_a_timeout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in Feed(tmp_path).environment.items():
+        monkeypatch.setenv(name, value)
+    settings = PylonSettings(kind="pylon", device_class="BaslerCamEmu", serial="0815-0000", trigger="line1", timeout_ms=100, **SMALL)
+    camera = PylonCamera(settings)
+    camera.open()
+    with pytest.raises(FrameTimeout, match="100 ms"):
+        camera.grab()
+    camera.close()
+
+
+def test_an_absent_camera_is_said_and_comes_back(fed: Fed) -> None:
+    os.environ["PYLON_CAMEMU"] = "0"
+    with pytest.raises(CameraLost, match="0815-0000"):
+        fed.open()
+    os.environ["PYLON_CAMEMU"] = "1"
+    fed.open()
+    fed.feed.show(picture(9))
+    assert fed.grab().image[5, 5] == 9
+
+
+# What only replay can show
+
+
+def test_an_empty_folder_is_said(tmp_path: Path) -> None:
+    with pytest.raises(CameraLost, match="holds no images"):
+        ReplayCamera(ReplaySettings(kind="replay", folder=tmp_path)).open()
+
+
+def test_an_unreadable_file_is_a_damaged_frame(tmp_path: Path) -> None:
+    (tmp_path / "a.png").write_bytes(b"not an image")
+    camera = ReplayCamera(ReplaySettings(kind="replay", folder=tmp_path))
+    camera.open()
+    with pytest.raises(FrameDamaged, match=r"a\.png"):
+        camera.grab()
+    with pytest.raises(CameraLost, match="no more"):
+        camera.grab()

@@ -1,0 +1,97 @@
+import sqlite3
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from station.archive import Archive, read_records
+from station.domain import Frame, Image, Inspection, Origin, Reason
+from station.errors import RecordError
+from station.imagefile import read_image
+from station.records import Record
+from station.settings import ArchiveSettings
+from tests.parts import nok_inspection, ok_inspection, provenance
+
+
+@pytest.fixture
+def archive(tmp_path: Path) -> Iterator[Archive]:
+    kept = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1))
+    yield kept
+    kept.close()
+
+
+def put(archive: Archive, image: Image | None, inspection: Inspection, trigger_id: int = 5) -> Record:
+    now = datetime.now(UTC)
+    frame = None if image is None else Frame(image, now, "cam", Origin.SIMULATED)
+    return archive.commit(archive.begin(frame), inspection, "S-1", trigger_id, provenance(), Origin.SIMULATED, now)
+
+
+def test_what_is_written_reads_back_whole(archive: Archive, tmp_path: Path, rng: np.random.Generator) -> None:
+    image = rng.integers(0, 256, (60, 80), dtype=np.uint8)
+    written = [
+        put(archive, image, ok_inspection()),
+        put(archive, image, nok_inspection()),
+        put(archive, None, Inspection.error(Reason.NO_FRAME)),
+    ]
+    read = list(read_records(tmp_path))
+    assert [r for _, r, _ in read] == written
+    assert all(problem is None for _, _, problem in read)
+    assert written[0].frame_file is not None
+    assert (read_image(tmp_path / written[0].frame_file) == image).all()
+
+
+def test_numbers_go_on_after_a_restart(archive: Archive, tmp_path: Path) -> None:
+    first = put(archive, None, Inspection.error(Reason.NO_FRAME))
+    again = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1))
+    assert put(again, None, Inspection.error(Reason.NO_FRAME)).inspection_id == first.inspection_id + 1
+    again.close()
+
+
+@pytest.mark.parametrize(("suffix", "said"), [("json", "changed"), ("png", "changed")])
+def test_a_changed_file_is_named(suffix: str, said: str, archive: Archive, tmp_path: Path) -> None:
+    put(archive, np.zeros((8, 8), np.uint8), ok_inspection())
+    (path,) = tmp_path.rglob(f"*.{suffix}")
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    ((_, _, problem),) = read_records(tmp_path)
+    assert problem is not None
+    assert said in problem
+
+
+def test_a_deleted_frame_is_named(archive: Archive, tmp_path: Path) -> None:
+    put(archive, np.zeros((8, 8), np.uint8), ok_inspection())
+    next(tmp_path.rglob("*.png")).unlink()
+    ((_, record, problem),) = read_records(tmp_path)
+    assert record is not None
+    assert problem is not None
+
+
+def test_a_locked_index_is_an_error_and_lists_nothing(archive: Archive, tmp_path: Path) -> None:
+    other = sqlite3.connect(tmp_path / "index.sqlite")
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(RecordError, match="could not be written"):
+        put(archive, None, Inspection.error(Reason.NO_FRAME))
+    other.rollback()
+    other.close()
+    assert list(read_records(tmp_path)) == []
+    put(archive, None, Inspection.error(Reason.NO_FRAME))
+
+
+def test_a_file_in_the_way_of_the_folder_is_said(tmp_path: Path) -> None:
+    (tmp_path / "x").write_text("")
+    with pytest.raises(RecordError, match=r"archive\.folder"):
+        Archive(ArchiveSettings(folder=tmp_path / "x" / "records"))
+
+
+def test_no_archive_is_said(tmp_path: Path) -> None:
+    with pytest.raises(RecordError, match="no records here"):
+        list(read_records(tmp_path))
+
+
+def test_a_full_disk_is_seen(tmp_path: Path) -> None:
+    kept = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=10**9))
+    assert not kept.has_room()
+    kept.close()

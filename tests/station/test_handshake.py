@@ -1,0 +1,267 @@
+"""The handshake as a law: whatever the inputs and times, OK is only ever shown for a judged frame of that trigger."""
+
+import pytest
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
+
+from station.plc import status_window
+from station.plc.handshake import Inputs, Phase, State, Step, Times, ready, step
+from station.plc.port import Health, Result
+from station.plc.registers import Control, Flags, Offline, Status, VerdictCode, number
+
+WELL = Health(True, Offline.NONE, False, 7)
+LOST = Health(False, Offline.CAMERA_LOST, True, 7)
+TIMES = Times()
+ON = Control.ENABLE
+
+
+def result(trigger_id: int, verdict: VerdictCode = VerdictCode.OK) -> Result:
+    return Result(trigger_id, "S", verdict, 9, 0, 0x1001 if verdict is VerdictCode.ERROR else 0, (0,) * 21, 0, 0, Flags(0))
+
+
+class Driver:
+    """A PLC and a clock."""
+
+    def __init__(self) -> None:
+        self.state, self.now, self.beat = State(), 100.0, 0
+        self.control, self.trigger_id, self.health, self.silent, self.command = Control(0), 0, WELL, False, 0
+        self.started: list[int] = []
+
+    def step(self, offered: Result | None = None, wait_s: float = 0.01, exposed: int | None = None) -> Step:
+        self.now += wait_s
+        self.beat += not self.silent
+        inputs = Inputs(self.control, self.beat & 0xFFFF, self.trigger_id, "S", self.command, self.health, 0.0, exposed, offered)
+        outcome = step(self.state, inputs, self.now, TIMES)
+        self.state = outcome.state
+        if outcome.start is not None:
+            self.started.append(outcome.start.trigger_id)
+        if outcome.again:
+            self.step(wait_s=0)
+        return outcome
+
+    def values(self) -> dict[str, object]:
+        return dict(status_window.values(self.state, self.health, self.now, (0, 0, 0)))
+
+    def bits(self) -> Status:
+        return Status(number(status_window.values(self.state, self.health, self.now, (0, 0, 0)), "STATUS"))
+
+    def trigger(self, trigger_id: int) -> None:
+        self.control = ON
+        self.step()
+        self.control, self.trigger_id = ON | Control.TRIGGER, trigger_id
+        self.step()
+
+
+@pytest.fixture
+def plc() -> Driver:
+    driver = Driver()
+    driver.control = ON
+    driver.step()
+    return driver
+
+
+def test_a_part_from_trigger_to_acknowledge(plc: Driver) -> None:
+    assert Status.READY in plc.bits()
+    plc.trigger(1)
+    assert plc.bits() & (Status.TRIGGER_ACK | Status.BUSY | Status.RESULT_VALID) == Status.TRIGGER_ACK | Status.BUSY
+    assert plc.started == [1]
+    plc.step(exposed=1)
+    assert Status.EXPOSURE_DONE in plc.bits()
+    plc.control = ON
+    plc.step()
+    assert Status.TRIGGER_ACK not in plc.bits()
+    assert not plc.step(result(1)).refused
+    assert plc.bits() & (Status.RESULT_VALID | Status.OK | Status.NOK) == Status.RESULT_VALID | Status.OK
+    plc.control = ON | Control.RESULT_ACK
+    plc.step()
+    assert plc.values()["VERDICT"] == 0
+    assert Status.READY not in plc.bits()
+    plc.control = ON
+    plc.step()
+    assert Status.READY in plc.bits()
+
+
+def test_the_old_result_is_gone_before_trigger_ack(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(1))
+    plc.control = ON
+    plc.step()
+    plc.control, plc.trigger_id = ON | Control.TRIGGER, 2
+    plc.now += 0.01
+    wiped = step(plc.state, Inputs(plc.control, 500, 2, "S", 0, WELL, 0.0), plc.now, TIMES)
+    assert wiped.again
+    assert wiped.start is None
+    shown = status_window.values(wiped.state, WELL, plc.now, (0, 0, 0))
+    assert shown["VERDICT"] == 0
+    assert Status.TRIGGER_ACK not in Status(number(shown, "STATUS"))
+
+
+@pytest.mark.parametrize("trigger_id", [0, 1])
+def test_zero_and_repeated_ids_are_missed(trigger_id: int, plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(1))
+    plc.trigger(trigger_id)
+    assert plc.started == [1]
+    assert Status.MISSED_TRIGGER in plc.bits()
+    assert plc.values()["ERROR_CODE"] == 0x2103
+
+
+def test_a_trigger_while_busy_is_missed(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.trigger(2)
+    assert plc.started == [1]
+    assert Status.MISSED_TRIGGER in plc.bits()
+
+
+def test_a_late_result_is_error_and_stays_error(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(wait_s=TIMES.deadline_s + 0.1)
+    assert plc.values()["VERDICT"] == VerdictCode.ERROR
+    assert plc.step(result(1)).refused
+    assert plc.values()["VERDICT"] == VerdictCode.ERROR
+
+
+def test_abort_gives_error(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.control |= Control.ABORT
+    plc.step()
+    assert plc.values()["VERDICT"] == VerdictCode.ERROR
+    assert plc.values()["ERROR_CODE"] == 0x2102
+
+
+def test_an_unread_result_is_wiped_after_its_time(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(1))
+    plc.control = ON
+    plc.step(wait_s=TIMES.result_ttl_s + 0.1)
+    assert plc.values()["VERDICT"] == 0
+
+
+@pytest.mark.parametrize("how", ["disable", "offline", "silent"])
+def test_leaving_the_line_wipes_the_result(how: str, plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(1))
+    plc.control = {"disable": Control(0), "offline": ON | Control.SET_OFFLINE, "silent": ON}[how]
+    plc.silent = how == "silent"
+    plc.step(wait_s=TIMES.plc_heartbeat_s + 0.1)
+    plc.step()
+    assert plc.values()["VERDICT"] == 0
+    assert Status.READY not in plc.bits()
+    assert plc.values()["OFFLINE_REASON"] == {"disable": 2, "offline": 3, "silent": 6}[how]
+
+
+def test_a_result_for_a_part_that_was_dropped_is_never_shown(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.control = Control(0)
+    plc.step()
+    plc.control = ON
+    plc.step()
+    assert plc.step(result(1)).refused
+    assert plc.values()["VERDICT"] == 0
+
+
+def test_camera_lost_says_why_not_ready(plc: Driver) -> None:
+    plc.health = LOST
+    plc.step()
+    assert not ready(plc.state)
+    assert plc.values()["OFFLINE_REASON"] == Offline.CAMERA_LOST
+    assert Status.FAILURE in plc.bits()
+    plc.health = WELL
+    plc.step()
+    assert Status.READY in plc.bits()
+
+
+def test_stuck_acknowledge_is_released_with_an_alarm(plc: Driver) -> None:
+    plc.control = ON | Control.RESULT_ACK
+    plc.step()
+    assert Status.READY not in plc.bits()
+    for _ in range(60):
+        plc.step(wait_s=0.1)
+    assert plc.bits() & (Status.READY | Status.MAINTENANCE) == Status.READY | Status.MAINTENANCE
+
+
+def test_clear_error(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(1, VerdictCode.ERROR))
+    assert Status.ERROR in plc.bits()
+    plc.control = ON | Control.CLEAR_ERROR
+    plc.step()
+    assert Status.ERROR not in plc.bits()
+
+
+def test_the_heartbeat_stands_still_when_the_inspection_does(plc: Driver) -> None:
+    before = plc.state.heartbeat
+    for _ in range(5):
+        plc.step(wait_s=0.11)
+    assert plc.state.heartbeat == before + 5
+    inputs = Inputs(ON, 999, 0, "", 0, WELL, TIMES.alive_s + 1)
+    stalled = step(plc.state, inputs, plc.now + 1, TIMES).state
+    assert stalled.heartbeat == plc.state.heartbeat
+    assert stalled.offline is Offline.STATION_STALLED
+
+
+class AnyInputs(RuleBasedStateMachine):
+    """Random PLC, random station, random times."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.plc = Driver()
+        self.judged_ok: set[int] = set()
+        self.last_shown = 0
+
+    @rule(control=st.integers(0, 255), trigger_id=st.integers(0, 4))
+    def write(self, control: int, trigger_id: int) -> None:
+        self.plc.control, self.plc.trigger_id = Control(control), trigger_id
+        self.plc.step()
+
+    @rule(trigger_id=st.integers(1, 4))
+    def proper_trigger(self, trigger_id: int) -> None:
+        self.plc.trigger(trigger_id)
+
+    @rule(wait_s=st.sampled_from([0.01, 0.1, 1.0, 3.0, 12.0]), silent=st.booleans(), well=st.booleans())
+    def wait(self, wait_s: float, silent: bool, well: bool) -> None:
+        self.plc.silent, self.plc.health = silent, WELL if well else LOST
+        self.plc.step(wait_s=wait_s)
+
+    @rule(trigger_id=st.integers(0, 4), verdict=st.sampled_from(list(VerdictCode)[1:]))
+    def offer(self, trigger_id: int, verdict: VerdictCode) -> None:
+        working = self.plc.state.trigger
+        if verdict is VerdictCode.OK and working is not None and working.trigger_id == trigger_id:
+            self.judged_ok.add(self.plc.state.last_id)
+        else:
+            self.judged_ok.discard(trigger_id)
+        self.plc.step(result(trigger_id, verdict))
+
+    @rule()
+    def started_anew(self) -> None:
+        if self.plc.state.phase in (Phase.WIPED, Phase.BUSY):
+            self.judged_ok.discard(self.plc.state.last_id)
+            self.plc.step()
+
+    @invariant()
+    def ok_only_for_a_judged_frame(self) -> None:
+        values, bits = self.plc.values(), self.plc.bits()
+        assert values["SEQ_HEAD"] == values["SEQ_TAIL"]
+        assert values["VERDICT"] ^ values["VERDICT_INV"] == 0xFFFF  # type: ignore[operator]
+        assert not (Status.OK in bits and Status.NOK in bits)
+        if Status.OK in bits:
+            assert Status.RESULT_VALID in bits
+            assert values["RESULT_TRIGGER_ID"] in self.judged_ok
+            assert values["RESULT_TRIGGER_ID"] == self.plc.state.last_id
+        if Status.READY in bits:
+            assert Status.BUSY not in bits
+
+    @invariant()
+    def there_is_a_way_out(self) -> None:
+        spare = Driver()
+        spare.state, spare.now, spare.beat = self.plc.state, self.plc.now, self.plc.beat
+        for control in (Control(0), ON):
+            spare.control = control
+            for _ in range(3):
+                spare.step()
+        assert Status.READY in spare.bits()
+
+
+TestAnyInputs = AnyInputs.TestCase
+TestAnyInputs.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)

@@ -1,0 +1,66 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from station.classify.onnx import Classifier, RingNetwork
+from station.domain import SEGMENTS, Image, Inspection, Reason, SegmentScores, Verdict
+from station.errors import ModelError
+from station.inspection import Inspector
+from station.settings import ModelSettings, QualitySettings, WeldSettings
+from tests.parts import label_with, labels, ok_inspection
+
+
+def test_shipped_frames_are_judged_right(frames: dict[str, Image], inspector: Inspector) -> None:
+    for item in labels():
+        judged = inspector.inspect(frames[item["frame"]])
+        assert judged.verdict == item["verdict"], item["frame"]
+        assert len(judged.scores) == SEGMENTS
+        wanted = {"OK": None, "hole": Reason.HOLE, "missing_weld": Reason.MISSING_WELD}[item["truth"]]
+        assert judged.reason == wanted
+
+
+def test_findings_touch_the_true_defects(frames: dict[str, Image], inspector: Inspector) -> None:
+    item = label_with("missing_weld")
+    found = inspector.inspect(frames[item["frame"]]).findings
+    for defect in item["defects"]:
+        middle = sum(defect["angle_deg"]) / 2
+        assert any(f.start_deg <= middle + turn <= f.end_deg for f in found for turn in (-360, 0, 360))
+
+
+def test_same_frame_same_answer_to_the_bit(frames: dict[str, Image], inspector: Inspector) -> None:
+    image = frames[labels()[0]["frame"]]
+    first, second = inspector.inspect(image), inspector.inspect(image)
+    assert (first.ring, first.scores, first.findings) == (second.ring, second.scores, second.findings)
+
+
+@pytest.mark.parametrize(
+    ("gain", "reason"), [(0.02, {Reason.TOO_DARK, Reason.NO_WELD_FOUND}), (40.0, {Reason.TOO_BRIGHT, Reason.NO_WELD_FOUND})]
+)
+def test_wrong_exposure_is_not_judged(gain: float, reason: set[Reason], frames: dict[str, Image], inspector: Inspector) -> None:
+    image = np.asarray(np.clip(frames[label_with("OK")["frame"]] * gain, 0, 255), np.uint8)
+    judged = inspector.inspect(image)
+    assert judged.verdict is Verdict.ERROR
+    assert judged.reason in reason
+
+
+def test_a_failing_model_is_never_ok(
+    frames: dict[str, Image], ring_network: RingNetwork, classifier: Classifier, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_self: Classifier, _crops: Image) -> tuple[SegmentScores, ...]:
+        raise ModelError("out of memory")
+
+    inspector = Inspector(ring_network, classifier, WeldSettings(), QualitySettings(), ModelSettings())
+    monkeypatch.setattr(Classifier, "__call__", fail)
+    judged = inspector.inspect(frames[label_with("OK")["frame"]])
+    assert (judged.verdict, judged.reason) == (Verdict.ERROR, Reason.MODEL_FAILED)
+
+
+@pytest.mark.parametrize("change", [{"scores": ()}, {"scores": ok_inspection().scores[:20]}, {"ring": None}, {"reason": Reason.HOLE}])
+def test_ok_cannot_be_made_from_less_than_21_segments(change: dict[str, object]) -> None:
+    with pytest.raises(ValueError, match="21 judged segments"):
+        replace(ok_inspection(), **change)  # type: ignore[arg-type]
+
+
+def test_errors_carry_no_scores() -> None:
+    assert Inspection.error(Reason.CAMERA_LOST).scores == ()

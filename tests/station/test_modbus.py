@@ -1,0 +1,132 @@
+"""The server over loopback, with pymodbus' own client as the peer."""
+
+import asyncio
+import socket
+import time
+from collections.abc import Iterator
+
+import pytest
+from pymodbus.client import AsyncModbusTcpClient
+
+from deploy.demo import free_ports
+from station.errors import LineError
+from station.plc.modbus import ModbusServerLine
+from station.plc.port import Health, Result
+from station.plc.registers import Flags, Offline, VerdictCode
+from station.settings import PlcSettings
+
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:pymodbus")
+
+
+@pytest.fixture
+def line() -> Iterator[ModbusServerLine]:
+    server = ModbusServerLine(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
+    server.start()
+    server.checked_in(Health(True, Offline.NONE, False, 7))
+    yield server
+    server.stop()
+
+
+def talk(line: ModbusServerLine, conversation: object) -> object:
+    async def run() -> object:
+        client = AsyncModbusTcpClient("127.0.0.1", port=line.port, timeout=2, retries=0)
+        assert await client.connect()
+        try:
+            return await conversation(client)  # type: ignore[operator]
+        finally:
+            client.close()
+
+    return asyncio.run(run())
+
+
+def test_every_register_reads_by_both_functions_and_every_unit(line: ModbusServerLine) -> None:
+    async def conversation(client: AsyncModbusTcpClient) -> None:
+        for unit in (0, 1, 255):
+            holding = await client.read_holding_registers(168, count=4, device_id=unit)
+            inputs = await client.read_input_registers(168, count=4, device_id=unit)
+            assert holding.registers == inputs.registers == [0x1234, 0x5678, 0x42F6, 0xE979]
+        bits = await client.read_coils(1600, count=16)
+        assert bits.bits[:16] == (await client.read_discrete_inputs(1600, count=16)).bits[:16]
+        identity = await client.read_device_information(read_code=1)
+        assert identity.information[0] == b"weldgate"
+
+    talk(line, conversation)
+
+
+def test_the_status_window_is_closed_to_writers(line: ModbusServerLine) -> None:
+    async def conversation(client: AsyncModbusTcpClient) -> None:
+        attempts = [
+            client.write_register(105, 1),
+            client.write_registers(100, [0xFFFF] * 10),
+            client.write_coil(1606, True),
+            client.write_coils(1600, [True] * 16),
+            client.write_registers(20, [0] * 6),
+            client.mask_write_register(address=105, and_mask=0, or_mask=1),
+            client.readwrite_registers(read_address=100, read_count=2, write_address=105, values=[1]),
+        ]
+        for attempt in attempts:
+            answer = await attempt
+            assert answer.isError()
+            assert answer.exception_code == 2
+        assert (await client.read_holding_registers(105, count=1)).registers == [0]
+
+    talk(line, conversation)
+
+
+def test_a_bit_written_as_a_coil_is_seen(line: ModbusServerLine) -> None:
+    async def conversation(client: AsyncModbusTcpClient) -> int:
+        await client.write_coil(0, True)
+        for _ in range(100):
+            status = (await client.read_holding_registers(100, count=1)).registers[0]
+            if status & 2:
+                return status
+            await asyncio.sleep(0.01)
+        return 0
+
+    assert isinstance(bits := talk(line, conversation), int)
+    assert bits & 3 == 3
+
+
+def test_a_result_is_readable_when_publish_returns(line: ModbusServerLine) -> None:
+    async def start(client: AsyncModbusTcpClient) -> None:
+        await client.write_registers(0, [1, 1, 77])
+        await asyncio.sleep(0.05)
+        await client.write_register(0, 3)
+
+    talk(line, start)
+    trigger = line.next_trigger(2.0)
+    assert trigger is not None
+    assert trigger.trigger_id == 77
+    assert line.publish(Result(77, "", VerdictCode.NOK, 70000, 1, 0, (5,) * 21, 8, 0, Flags.SIMULATED))
+
+    async def read(client: AsyncModbusTcpClient) -> list[int]:
+        return list((await client.read_holding_registers(100, count=76)).registers)
+
+    words = talk(line, read)
+    assert isinstance(words, list)
+    assert words[5:9] == [2, 0xFFFD, 1, 70000 - 65536]
+    assert words[4] == 77
+    assert words[2] == words[75]
+    assert words[74] == 1
+
+
+def test_a_taken_port_is_said_in_one_line() -> None:
+    with socket.socket() as holder:
+        holder.bind(("127.0.0.1", 0))
+        holder.listen()
+        server = ModbusServerLine(PlcSettings(port=holder.getsockname()[1]))
+        with pytest.raises(LineError, match=r"plc\.port"):
+            server.start()
+        server.stop()
+
+
+def test_noise_on_the_wire_changes_nothing(line: ModbusServerLine) -> None:
+    for junk in (b"", b"\x00" * 300, b"GET / HTTP/1.0\r\n\r\n", b"\x00\x01\x00\x00\xff\xff\x01\x10" + b"\xff" * 250):
+        with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
+            peer.sendall(junk)
+    time.sleep(0.1)
+
+    async def read(client: AsyncModbusTcpClient) -> list[int]:
+        return list((await client.read_holding_registers(105, count=2)).registers)
+
+    assert talk(line, read) == [0, 0xFFFF]

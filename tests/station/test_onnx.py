@@ -1,0 +1,61 @@
+from pathlib import Path
+
+import numpy as np
+import onnx
+import pytest
+
+from station.classify.onnx import Classifier
+from station.errors import ModelError
+from tests.conftest import MODEL
+
+
+def test_the_shipped_model_says_what_it_is(classifier: Classifier) -> None:
+    assert classifier.card.version
+    assert len(classifier.card.data_hash) == 64
+    assert 0 < classifier.card.hole_threshold < 1
+
+
+def test_one_crop_and_many_give_the_same(classifier: Classifier, rng: np.random.Generator) -> None:
+    crops = rng.integers(0, 256, (21, 128, 128), dtype=np.uint8)
+    many, one = classifier(crops), classifier(crops[4:5])
+    assert many[4].nok == pytest.approx(one[0].nok, abs=1e-5)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match=r"none\.onnx"):
+        Classifier(tmp_path / "none.onnx")
+
+
+@pytest.mark.parametrize("keep", [0, 10, 5000])
+def test_a_damaged_file_is_refused(keep: int, tmp_path: Path) -> None:
+    path = tmp_path / "bad.onnx"
+    path.write_bytes(MODEL.read_bytes()[:keep])
+    with pytest.raises(ModelError, match=r"bad\.onnx"):
+        Classifier(path)
+
+
+@pytest.mark.parametrize("key", ["weldgate.classes", "weldgate.thresholds", "weldgate.data_hash", "weldgate.version"])
+def test_a_model_without_its_metadata_is_refused(key: str, tmp_path: Path) -> None:
+    model = onnx.load(str(MODEL))
+    kept = [m for m in model.metadata_props if m.key != key]
+    del model.metadata_props[:]
+    model.metadata_props.extend(kept)
+    onnx.save(model, str(tmp_path / "bare.onnx"))
+    with pytest.raises(ModelError, match=key):
+        Classifier(tmp_path / "bare.onnx")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("weldgate.classes", '["a", "b"]', "classes"),
+        ("weldgate.thresholds", "{}", "cannot be read"),
+        ("weldgate.thresholds", '{"hole": 2, "missing_weld": 0.5}', "between 0 and 1"),
+    ],
+)
+def test_foreign_metadata_is_refused(key: str, value: str, said: str, tmp_path: Path) -> None:
+    model = onnx.load(str(MODEL))
+    next(m for m in model.metadata_props if m.key == key).value = value
+    onnx.save(model, str(tmp_path / "odd.onnx"))
+    with pytest.raises(ModelError, match=said):
+        Classifier(tmp_path / "odd.onnx")

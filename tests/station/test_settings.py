@@ -1,0 +1,43 @@
+from pathlib import Path
+
+import pytest
+
+from station.errors import SettingsError
+from station.settings import PylonSettings, load
+from tests.conftest import ROOT
+
+GOOD = '[camera]\nkind = "pylon"\nserial = "1"\n'
+
+
+def test_the_example_loads_and_its_paths_count_from_its_folder() -> None:
+    settings = load(ROOT / "deploy" / "station.toml")
+    assert isinstance(settings.camera, PylonSettings)
+    assert settings.model.path.resolve() == ROOT / "models" / "shipped" / "weldgate.onnx"
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ("", "camera"),
+        ("[camera", "not valid TOML"),
+        ('[camera]\nkind = "webcam"\n', "kind"),
+        ('[camera]\nkind = "pylon"\nserial = ""\n', "serial"),
+        (GOOD + "exposure_us = -1\n", "exposure_us"),
+        (GOOD + "expsure_us = 5\n", "expsure_us"),
+        (GOOD + "[plc]\nport = 70000\n", "plc.port"),
+        (GOOD + "[model]\nhole_threshold = 1.5\n", "hole_threshold"),
+        (GOOD + '[channel]\nhost = "nowhere"\n', "channel.host"),
+    ],
+)
+def test_mistakes_are_named_with_file_and_key(text: str, part: str, tmp_path: Path) -> None:
+    path = tmp_path / "station.toml"
+    path.write_text(text)
+    with pytest.raises(SettingsError, match=part) as caught:
+        load(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_says_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="no such settings file"):
+        load(tmp_path / "none.toml")

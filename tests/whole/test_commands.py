@@ -1,0 +1,148 @@
+"""The commands as a user types them, in processes of their own."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from deploy.demo import free_ports
+from station.archive import read_records
+from station.channel import Subscriber
+from station.events import StatusEvent
+from station.plc.registers import Offline
+from station.settings import ChannelSettings
+from tests.conftest import MODEL, RING_MODEL, ROOT
+from tests.parts import FRAMES, labels
+
+
+def run(*command: str, **environment: str) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run(
+        [sys.executable, "-m", *command],
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=False,
+    )
+
+
+def test_demo_on_the_shipped_frames(tmp_path: Path) -> None:
+    out = tmp_path / "out.json"
+    count = len(labels())
+    done = run("deploy.demo", "--headless", "--parts", str(count), "--json", str(out), "--records", str(tmp_path / "records"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    report = json.loads(out.read_text())
+    assert [p["truth"] for p in report["parts"]] == [item["truth"] for item in labels()]
+    assert (report["escapes"], report["false_rejects"], report["errors"], report["handshakes_complete"]) == (0, 0, 0, count)
+    assert sum(problem is None for _, _, problem in read_records(tmp_path / "records")) == count
+    replayed = tmp_path / "replay.json"
+    assert run("station", "replay", str(tmp_path / "records"), "--json", str(replayed)).returncode == 0
+    again = json.loads(replayed.read_text())
+    for _, record, _ in read_records(tmp_path / "records"):
+        assert record is not None
+        entry = again[Path(record.frame_file or "").name]
+        assert entry["verdict"] == record.verdict
+        assert entry["segments"] == [s.nok for s in record.inspection.scores], "replay is not bit for bit"
+
+
+def test_replay_names_bad_files_and_judges_the_rest(tmp_path: Path) -> None:
+    (tmp_path / "empty.png").write_bytes(b"")
+    (tmp_path / "text.bmp").write_text("hello")
+    (tmp_path / "notes.txt").write_text("not an image, not looked at")
+    (tmp_path / "größe 1.png").write_bytes((FRAMES / labels()[0]["frame"]).read_bytes())
+    done = run("station", "replay", str(tmp_path), "--json", str(tmp_path / "out.json"), "--csv", str(tmp_path / "out.csv"))
+    assert done.returncode == 1
+    assert "empty.png: not a readable image" in done.stderr
+    assert "text.bmp: not a readable image" in done.stderr
+    report = json.loads((tmp_path / "out.json").read_text())
+    assert report["größe 1.png"]["verdict"] == labels()[0]["verdict"]
+    assert report["empty.png"]["segments"] == [None] * 21
+    assert len((tmp_path / "out.csv").read_text().splitlines()) == 4
+
+
+SETTINGS = '[camera]\nkind = "pylon"\ndevice_class = "BaslerCamEmu"\nserial = "0815-0000"\n'
+
+
+@pytest.mark.parametrize(
+    ("command", "text", "said"),
+    [
+        (["engine"], None, "no such settings file"),
+        (["engine"], "[camera]\nkind = 3\n", "camera"),
+        (["engine"], SETTINGS + '[model]\npath = "none.onnx"\nring_path = "none.onnx"\n', "none.onnx"),
+        (["panel"], None, "no such settings file"),
+        (["run"], None, "no such settings file"),
+    ],
+)
+def test_mistakes_end_with_one_line_and_code_2(command: list[str], text: str | None, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "station.toml"
+    if text is not None:
+        path.write_text(text)
+    done = run("station", *command, "-c", str(path))
+    assert done.returncode == 2
+    (line,) = [entry for entry in done.stderr.splitlines() if entry.startswith("weldgate:")]
+    assert said in line
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "records").exists()
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (["station", "replay", "/nowhere/at/all"], "no such file"),
+        (["station", "records", "/nowhere/at/all"], "no records here"),
+        (["models", "train", "/nowhere/at/all", "--out", "/tmp"], "weldgate-synth part"),
+        (["station", "line", "--port", "1", "--parts", "1"], "no Modbus server"),
+    ],
+)
+def test_wrong_paths_end_with_one_line_and_code_2(command: list[str], said: str) -> None:
+    done = run(*command)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_check_says_what_is_wrong(tmp_path: Path) -> None:
+    path = tmp_path / "station.toml"
+    path.write_text(SETTINGS + f'[model]\npath = "{MODEL}"\nring_path = "none.onnx"\n[plc]\nport = {free_ports(1)[0]}\n')
+    done = run("station", "check", "-c", str(path))
+    assert done.returncode == 1
+    assert "BAD  model" in done.stdout
+    assert "ok   camera" in done.stdout
+
+
+def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> None:
+    plc, events, preview = free_ports(3)
+    path = tmp_path / "station.toml"
+    path.write_text(
+        SETTINGS
+        + f'[model]\npath = "{MODEL}"\nring_path = "{RING_MODEL}"\n[plc]\nport = {plc}\n'
+        + f"[channel]\nevents_port = {events}\npreview_port = {preview}\n"
+    )
+    engine = subprocess.Popen(
+        [sys.executable, "-m", "station", "engine", "-c", str(path)],
+        cwd=ROOT,
+        env={**os.environ, "PYLON_CAMEMU": "0"},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    subscriber = Subscriber(ChannelSettings(events_port=events, preview_port=preview))
+    try:
+        until, heard = time.monotonic() + 30, None
+        while time.monotonic() < until and heard is None:
+            heard = next((e for e in subscriber.events() if isinstance(e, StatusEvent)), None)
+            time.sleep(0.05)
+        assert heard is not None
+        assert not heard.camera_there
+        assert "0815-0000" in heard.camera_message
+        assert heard.offline in (Offline.CAMERA_LOST, Offline.NOT_ENABLED, Offline.PLC_SILENT)
+    finally:
+        subscriber.close()
+        engine.terminate()
+        _, errors = engine.communicate(timeout=20)
+    assert engine.returncode == 0, errors
+    assert "Traceback" not in errors
