@@ -113,7 +113,13 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
         environment = {**os.environ, **feed.environment}
         engine = stack.enter_context(_process([sys.executable, "-m", "station", "engine", "-c", str(settings)], environment, log))
         if window:
-            stack.enter_context(_process([sys.executable, "-m", "station", "panel", "-c", str(settings)], dict(os.environ), log))
+            panel_log = stack.enter_context((folder / "panel.log").open("w"))
+            panel = stack.enter_context(
+                _process([sys.executable, "-m", "station", "panel", "-c", str(settings)], dict(os.environ), panel_log)
+            )
+            time.sleep(1.0)
+            if panel.poll() is not None:
+                console.print(f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]")
         parts = _parts(arguments.parts, folder / "fresh", renderer, console)
         judged = asyncio.run(_drive(plc_port, feed, parts, engine, folder / "engine.log", pace_s, console))
     return _summary(judged, arguments, records, console)

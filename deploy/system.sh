@@ -2,19 +2,35 @@
 # System libraries that the packages need, through apt, only what is missing. Usage: system.sh
 set -euo pipefail
 
-have() { ldconfig -p | grep -q "$1"; }
+# library file -> Debian and Ubuntu package: Qt's xcb platform, OpenGL stubs, pylon, and LLVM for Mitsuba
+needed=(
+    libEGL.so.1=libegl1
+    libGL.so.1=libgl1
+    libglib-2.0.so.0=libglib2.0-0
+    libfontconfig.so.1=libfontconfig1
+    libdbus-1.so.3=libdbus-1-3
+    libX11-xcb.so.1=libx11-xcb1
+    libxcb-cursor.so.0=libxcb-cursor0
+    libxcb-icccm.so.4=libxcb-icccm4
+    libxcb-image.so.0=libxcb-image0
+    libxcb-keysyms.so.1=libxcb-keysyms1
+    libxcb-randr.so.0=libxcb-randr0
+    libxcb-render-util.so.0=libxcb-render-util0
+    libxcb-shape.so.0=libxcb-shape0
+    libxcb-sync.so.1=libxcb-sync1
+    libxcb-xfixes.so.0=libxcb-xfixes0
+    libxcb-xkb.so.1=libxcb-xkb1
+    libxkbcommon-x11.so.0=libxkbcommon-x11-0
+    libLLVM.so.19.1=libllvm19
+)
 
+known=$(ldconfig -p)
 packages=()
+for entry in "${needed[@]}"; do
+    grep -qF "${entry%%=*}" <<<"$known" || packages+=("${entry#*=}")
+done
 python3 -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
-have 'libEGL.so.1' || packages+=(libegl1)
-have 'libGL.so.1' || packages+=(libgl1)
-have 'libxcb-cursor.so.0' || packages+=(libxcb-cursor0)
-have 'libxkbcommon-x11.so.0' || packages+=(libxkbcommon-x11-0)
-have 'libdbus-1.so.3' || packages+=(libdbus-1-3)
-have 'libfontconfig.so.1' || packages+=(libfontconfig1)
-have 'libglib-2.0.so.0' || packages+=(libglib2.0-0)
-ls /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf >/dev/null 2>&1 || packages+=(fonts-dejavu-core)
-have 'libLLVM.so.19\|libLLVM-19' || packages+=(libllvm19)
+[ -e /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf ] || packages+=(fonts-dejavu-core)
 [ ${#packages[@]} -eq 0 ] && exit 0
 
 if ! command -v apt-get >/dev/null; then
@@ -23,9 +39,9 @@ if ! command -v apt-get >/dev/null; then
 fi
 root=()
 if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || { echo "system.sh: run as root once: apt-get install ${packages[*]}" >&2; exit 1; }
+    command -v sudo >/dev/null || { echo "system.sh: run once as root: apt-get install ${packages[*]}" >&2; exit 1; }
     root=(sudo)
 fi
 echo "installing: ${packages[*]}"
 "${root[@]}" apt-get update -qq
-DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null
+"${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null

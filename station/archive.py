@@ -31,7 +31,8 @@ CREATE TABLE IF NOT EXISTS records (
     worst_score REAL,
     frame_file TEXT,
     record_file TEXT NOT NULL,
-    record_sha256 TEXT NOT NULL
+    record_sha256 TEXT NOT NULL,
+    shown_to_plc INTEGER
 );
 CREATE INDEX IF NOT EXISTS records_serial ON records (serial);
 CREATE INDEX IF NOT EXISTS records_time ON records (grabbed_at);
@@ -90,6 +91,14 @@ class Archive:
                 self._index.rollback()
             raise RecordError(f"{self._folder}: the record could not be written: {error}") from None
 
+    def mark_shown(self, inspection_id: int, shown: bool) -> None:
+        """Note whether the PLC was shown this verdict; NULL: the station stopped before it could tell."""
+        try:
+            with self._index:
+                self._index.execute("UPDATE records SET shown_to_plc = ? WHERE inspection_id = ?", (shown, inspection_id))
+        except sqlite3.Error as error:
+            raise RecordError(f"{self._folder}: record {inspection_id} could not be marked: {error}") from None
+
     def _commit(
         self, pending: Pending, inspection: Inspection, serial: str, trigger_id: int, provenance: Provenance, origin: Origin, now: datetime
     ) -> Record:
@@ -121,7 +130,7 @@ class Archive:
         worst = max((s.nok for s in inspection.scores), default=None)
         with self._index:
             self._index.execute(
-                "INSERT INTO records VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                "INSERT INTO records VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)",
                 (
                     inspection_id,
                     serial,

@@ -42,7 +42,10 @@ def read_image(path: Path) -> Image:
 
 def encode_png(image: Image) -> bytes:
     """Lossless PNG, fastest level."""
-    done, buffer = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    try:
+        done, buffer = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    except cv2.error as error:
+        raise ImageError(f"the frame could not be encoded: {error.err}") from None
     if not done:
         raise ImageError("the frame could not be encoded")
     return bytes(buffer)

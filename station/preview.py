@@ -6,7 +6,7 @@ from station.domain import STRIP_ROWS, Image, Ring
 from station.events import Preview
 from station.vision.unwrap import unwrap
 
-MARGIN_PX = 60
+MARGIN_PX = 75
 SCALE = 0.75
 FRAME_SCALE = 0.25
 

@@ -80,6 +80,7 @@ class PylonCamera:
             if not camera.IsGrabbing() or camera.IsCameraDeviceRemoved():
                 self.close()
                 raise CameraLost(f"camera {s.serial}: stopped grabbing")
+            _flush(camera)
             raise FrameTimeout(f"camera {s.serial}: no frame within {s.timeout_ms} ms")
         if not result.GrabSucceeded():
             raise FrameDamaged(f"camera {s.serial}: frame incompletely grabbed ({result.GetErrorDescription() or 'no description'})")
@@ -107,6 +108,12 @@ def _configure(camera: pylon.InstantCamera, s: PylonSettings) -> None:
     camera.TriggerMode.Value = "On"
     camera.TriggerSource.Value = SOURCES[s.trigger]
     camera.MaxNumBuffer.Value = 5
+
+
+def _flush(camera: pylon.InstantCamera) -> None:
+    """A frame that comes late must not be taken for the next part's."""
+    camera.StopGrabbing()
+    camera.StartGrabbing(pylon.GrabStrategy_OneByOne)
 
 
 def _release(camera: pylon.InstantCamera) -> None:

@@ -3,7 +3,7 @@
 from math import cos, radians, sin
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QImage, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from station.domain import SEGMENT_DEG, SEGMENTS, STRIP_ROWS
@@ -47,6 +47,17 @@ class LiveView(QWidget):
         painter.drawImage(QRectF(left, top, self._image.width() * zoom, self._image.height() * zoom), self._image)
         if self._part is not None and self._part.record.inspection_id == self._preview.inspection_id:
             self._overlay(painter, self._part, self._preview, zoom, QPointF(left, top))
+        else:
+            self._stale(painter, self._preview.inspection_id)
+
+    def _stale(self, painter: QPainter, inspection_id: int) -> None:
+        """The last part has no picture: say that this one is older."""
+        painter.fillRect(self.rect(), QColor(16, 18, 20, 150))
+        font = painter.font()
+        font.setPixelSize(22)
+        painter.setFont(font)
+        painter.setPen(QColor(theme.TEXT))
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, f"no picture of this part\n(behind: part no. {inspection_id})")
 
     def _overlay(self, painter: QPainter, part: PartEvent, preview: Preview, zoom: float, corner: QPointF) -> None:
         ring = part.record.inspection.ring
@@ -59,7 +70,10 @@ class LiveView(QWidget):
         painter.setPen(QPen(QColor(230, 232, 234, 110), 1))
         for radius in (inner, outer):
             painter.drawEllipse(center, radius, radius)
-        painter.setFont(QFont("DejaVu Sans", max(8, int(13 * zoom / 1.0)) if zoom < 1 else 12))
+        font = painter.font()
+        font.setPixelSize(17)
+        font.setBold(True)
+        painter.setFont(font)
         for index in range(SEGMENTS):
             nok = index < len(part.seg_nok) and part.seg_nok[index]
             start = radians(index * SEGMENT_DEG)
@@ -73,7 +87,7 @@ class LiveView(QWidget):
                     box = QRectF(center.x() - radius, center.y() - radius, 2 * radius, 2 * radius)
                     painter.drawArc(box, int(-(index + 1) * SEGMENT_DEG * 16), int(SEGMENT_DEG * 16))
             middle = radians((index + 0.5) * SEGMENT_DEG)
-            at = center + QPointF(cos(middle), sin(middle)) * (outer + 16)
+            at = center + QPointF(cos(middle), sin(middle)) * (outer + 24)
             painter.setPen(QColor(theme.BAD) if nok else QColor(theme.TEXT))
             label = f"✗{index + 1}" if nok else str(index + 1)
-            painter.drawText(QRectF(at.x() - 22, at.y() - 12, 44, 24), Qt.AlignmentFlag.AlignCenter, label)
+            painter.drawText(QRectF(at.x() - 26, at.y() - 13, 52, 26), Qt.AlignmentFlag.AlignCenter, label)

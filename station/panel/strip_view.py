@@ -52,8 +52,8 @@ class StripView(QWidget):
             painter.setPen(QColor("#ffffff" if nok else theme.TEXT))
             text = f"{index + 1}" if index >= len(scores) else f"{index + 1}: {scores[index].nok:.2f}"
             font = painter.font()
-            font.setPixelSize(11 if width < 60 else 13)
-            font.setBold(nok)
+            font.setPixelSize(11 if width < 64 else 13)
+            font.setBold(nok and width >= 64)
             painter.setFont(font)
             painter.drawText(cell, Qt.AlignmentFlag.AlignCenter, text)
             if nok:

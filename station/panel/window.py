@@ -51,7 +51,6 @@ class Window(QMainWindow):
         side.addWidget(self._lamp, 2)
         side.addWidget(self._card(FACTS[:6]))
         side.addWidget(self._card(FACTS[6:]))
-        side.addStretch(1)
         top = QHBoxLayout()
         top.addWidget(self._live, 1)
         column = QWidget()

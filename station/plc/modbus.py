@@ -69,6 +69,7 @@ class ModbusServerLine:
         self._server: ModbusTcpServer | None = None
         self._thread: threading.Thread | None = None
         self._wake: asyncio.Event | None = None
+        self._lock: asyncio.Lock | None = None
         self._stopping = False
         self.port = settings.port
 
@@ -124,7 +125,7 @@ class ModbusServerLine:
 
     async def _run(self, up: "Future[None]") -> None:
         self._loop = asyncio.get_running_loop()
-        self._wake = asyncio.Event()
+        self._wake, self._lock = asyncio.Event(), asyncio.Lock()
         identity = ModbusDeviceIdentification(  # type: ignore[no-untyped-call]
             info_name={"VendorName": "weldgate", "ProductCode": "WG", "ProductName": "weldgate", "MajorMinorRevision": __version__}
         )
@@ -178,10 +179,18 @@ class ModbusServerLine:
         self._health, self._health_s = health, time.monotonic()
 
     async def _step(self, exposure_done_for: int | None = None, result: Result | None = None) -> Step:
-        """Read the command window, step, publish the whole record in one call, then act."""
-        if self._server is None:
+        """One step, and a second one at once if the first asks for it; never two at a time."""
+        if self._lock is None or self._server is None:
             raise LineError("the Modbus server is not running")
-        words = await self._server.async_getValues(1, READ, COMMAND_START, COMMAND_WORDS)
+        async with self._lock:
+            outcome = await self._step_once(self._server, exposure_done_for, result)
+            if outcome.again:
+                await self._step_once(self._server)
+            return outcome
+
+    async def _step_once(self, server: ModbusTcpServer, exposure_done_for: int | None = None, result: Result | None = None) -> Step:
+        """Read the command window, step, publish the whole record in one call, then act."""
+        words = await server.async_getValues(1, READ, COMMAND_START, COMMAND_WORDS)
         command = unpack_window(COMMAND_START, [int(w) for w in words])
         now_s = time.monotonic()
         inputs = Inputs(
@@ -202,19 +211,15 @@ class ModbusServerLine:
             shown = outcome.state.result.verdict
             if shown in self._counts:
                 self._counts[shown] += 1
-        await self._publish(now_s)
+        await self._publish(server, now_s)
         if outcome.start is not None:
             self._triggers.put(outcome.start)
-        if outcome.again:
-            await self._step()
         return outcome
 
-    async def _publish(self, now_s: float) -> None:
-        if self._server is None:
-            return
+    async def _publish(self, server: ModbusTcpServer, now_s: float) -> None:
         counts = (self._counts[VerdictCode.OK], self._counts[VerdictCode.NOK], self._counts[VerdictCode.ERROR])
         values = status_window.values(self._state, self._health, now_s, counts)
-        await self._server.async_setValues(1, WRITE, STATUS_START, pack_window(STATUS_START, STATUS_WORDS, values))
+        await server.async_setValues(1, WRITE, STATUS_START, pack_window(STATUS_START, STATUS_WORDS, values))
         self._published = {name: number(values, name) for name in self._published}
 
 

@@ -4,6 +4,7 @@ import asyncio
 import time
 from dataclasses import dataclass
 
+from station.errors import LineError
 from station.plc.modbus import ModbusClient
 from station.plc.registers import (
     BY_NAME,
@@ -80,7 +81,7 @@ class SimulatedLine:
             try:
                 await self._client.connect()
                 break
-            except Exception:
+            except LineError:
                 if time.monotonic() > until:
                     raise
                 await asyncio.sleep(0.2)

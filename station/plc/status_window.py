@@ -56,7 +56,7 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         worst = max(range(len(shown.seg_scores)), key=lambda i: shown.seg_scores[i], default=0)
         window |= {
             "RESULT_TRIGGER_ID": shown.trigger_id,
-            "INSPECTION_ID": shown.inspection_id,
+            "INSPECTION_ID": shown.inspection_id & 0xFFFFFFFF,
             "REASON": shown.reason,
             "SEG_NOK_MASK": shown.seg_nok_mask,
             "SEG_INVALID_MASK": shown.seg_invalid_mask,
