@@ -15,61 +15,22 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
 
 import cv2
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
-from station.domain import Verdict
-from station.errors import WeldgateError
-from station.plc.registers import REASON_CODES, VerdictCode
-from station.plc.simulated_line import Answer, SimulatedLine
+from deploy.summary import DemoPart, Judged, count, summarise, tell, write_json
+from station.errors import LineError, WeldgateError
+from station.plc.simulated_line import SimulatedLine
 from synth.errors import SynthError
 from synth.feed import Feed
 
 HERE = Path(__file__).resolve().parent
 SHIPPED = HERE / "frames"
 SERIAL = "0815-0000"
-REASONS = {code: str(reason) for reason, code in REASON_CODES.items()}
 RENDER_PATIENCE_S = 120.0
-
-
-@dataclass(frozen=True, slots=True)
-class DemoPart:
-    """One frame with known truth."""
-
-    name: str
-    path: Path
-    truth: str
-
-
-@dataclass(frozen=True, slots=True)
-class Judged:
-    """What the line got for one part."""
-
-    part: DemoPart
-    answer: Answer
-
-    @property
-    def verdict(self) -> str:
-        """OK only if the PLC accepted the part by all points of its rule."""
-        if self.answer.accepted:
-            return Verdict.OK
-        return Verdict.NOK if self.answer.verdict is VerdictCode.NOK else Verdict.ERROR
-
-    @property
-    def escape(self) -> bool:
-        """A defective part released."""
-        return self.part.truth != "OK" and self.verdict == Verdict.OK
-
-    @property
-    def false_reject(self) -> bool:
-        """A good part refused."""
-        return self.part.truth == "OK" and self.verdict == Verdict.NOK
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -89,8 +50,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.json is not None and not arguments.json.resolve().parent.is_dir():
         parser.error(f"--json {arguments.json}: its folder does not exist")
     try:
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
         return _run(arguments, Console())
-    except (WeldgateError, SynthError) as error:
+    except (WeldgateError, SynthError, OSError) as error:
         print(f"weldgate-demo: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
@@ -122,7 +84,10 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
                 console.print(f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]")
         parts = _parts(arguments.parts, folder / "fresh", renderer, console)
         judged = asyncio.run(_drive(plc_port, feed, parts, engine, folder / "engine.log", pace_s, console))
-    return _summary(judged, arguments, records, console)
+    summarise(judged, records, console)
+    if arguments.json is not None:
+        write_json(arguments.json, judged, records)
+    return 0 if count(judged).good and len(judged) == arguments.parts else 1
 
 
 def shipped_parts() -> list[DemoPart]:
@@ -218,86 +183,42 @@ async def _drive(
     line = SimulatedLine("127.0.0.1", port, accept_simulated=True)
     judged: list[Judged] = []
     try:
-        first = True
-        for part in parts:
+        up = False
+        while (part := await line.meanwhile(asyncio.to_thread(next, parts, None))) is not None:
             image = cv2.imread(str(part.path), cv2.IMREAD_GRAYSCALE)
             if image is None:
                 raise SynthError(f"{part.path}: not a readable image; restore it from the repository")
             feed.show(np.asarray(image, np.uint8))
-            if first:
-                await line.connect()
-                if not await line.wait_ready(15.0):
-                    raise WeldgateError(f"the engine did not become ready: {_last_line(log)}")
-                first = False
+            if not up:
+                await _bring_up(line, engine, log)
+                up = True
             if engine.poll() is not None:
                 raise WeldgateError(f"the engine stopped: {_last_line(log)}")
             judged.append(Judged(part, await line.inspect(part.name)))
-            _tell(judged, console)
+            tell(judged, console)
             await asyncio.sleep(pace_s)
     finally:
         line.close()
     return judged
 
 
+async def _bring_up(line: SimulatedLine, engine: "subprocess.Popen[bytes]", log: Path) -> None:
+    until = time.monotonic() + 30.0
+    while True:
+        try:
+            await line.connect(timeout_s=0.0)
+            break
+        except LineError:
+            if engine.poll() is not None or time.monotonic() > until:
+                raise WeldgateError(f"the engine did not start: {_last_line(log)}") from None
+            await asyncio.sleep(0.1)
+    if not await line.wait_ready(15.0):
+        raise WeldgateError(f"the engine did not become ready: {_last_line(log)}")
+
+
 def _last_line(log: Path) -> str:
     lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
     return lines[-1] if lines else "it said nothing"
-
-
-def _tell(judged: list[Judged], console: Console) -> None:
-    last = judged[-1]
-    style = {"OK": "green", "NOK": "red"}.get(last.verdict, "yellow")
-    mark = "[bold red]ESCAPE[/]" if last.escape else "[yellow]false reject[/]" if last.false_reject else ""
-    took = "-" if last.answer.trigger_to_valid_ms is None else f"{last.answer.trigger_to_valid_ms:.0f} ms"
-    reason = REASONS.get(last.answer.reason, last.answer.refused_by if last.verdict == "ERROR" else "") or ""
-    console.print(
-        f"{len(judged):4d}  {last.part.name:16}  is {last.part.truth:13} judged [{style}]{last.verdict:5}[/] {reason:14} {took:>8}  {mark}"
-    )
-
-
-def _summary(judged: list[Judged], arguments: argparse.Namespace, records: Path, console: Console) -> int:
-    escapes = sum(j.escape for j in judged)
-    false_rejects = sum(j.false_reject for j in judged)
-    errors = sum(j.verdict == Verdict.ERROR for j in judged)
-    incomplete = sum(not j.answer.handshake_complete for j in judged)
-    times = sorted(j.answer.trigger_to_valid_ms for j in judged if j.answer.trigger_to_valid_ms is not None)
-    right = len(judged) - escapes - false_rejects - errors
-    table = Table(title="weldgate demo", show_header=False)
-    for name, value in (
-        ("parts", str(len(judged))),
-        ("right verdicts", str(right)),
-        ("wrong verdicts", str(escapes + false_rejects)),
-        ("  escapes", str(escapes)),
-        ("  false rejects", str(false_rejects)),
-        ("not judged (ERROR)", str(errors)),
-        ("handshakes complete", f"{len(judged) - incomplete} of {len(judged)}"),
-        ("trigger to RESULT_VALID", f"median {median(times):.0f} ms, worst {times[-1]:.0f} ms" if times else "-"),
-        ("records", str(records)),
-    ):
-        table.add_row(name, value)
-    console.print(table)
-    if arguments.json is not None:
-        report = {
-            "parts": [
-                {
-                    "part": j.part.name,
-                    "truth": j.part.truth,
-                    "verdict": j.verdict,
-                    "reason": REASONS.get(j.answer.reason),
-                    "trigger_to_valid_ms": j.answer.trigger_to_valid_ms,
-                }
-                for j in judged
-            ],
-            "escapes": escapes,
-            "false_rejects": false_rejects,
-            "errors": errors,
-            "handshakes_complete": len(judged) - incomplete,
-            "records": str(records),
-        }
-        part = arguments.json.with_name(arguments.json.name + ".part")
-        part.write_text(json.dumps(report, indent=1))
-        part.replace(arguments.json)
-    return 1 if escapes or errors or incomplete or len(judged) != arguments.parts else 0
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import argparse
 import asyncio
 import logging
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -24,7 +25,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", stream=sys.stderr)
     try:
         return int(arguments.command(arguments))
-    except WeldgateError as error:
+    except (WeldgateError, OSError) as error:
         print(f"weldgate: {error}", file=sys.stderr)
         return 2
     except (KeyboardInterrupt, BrokenPipeError):
@@ -58,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
     registers.add_argument("--format", choices=("md", "csv"), default="md")
     line = add("line", _line, "run a simulated line PLC against a station", settings=False)
     line.add_argument("--host", default="127.0.0.1")
-    line.add_argument("--port", type=int, default=1502)
+    line.add_argument("--port", type=int, choices=range(1, 65536), default=1502, metavar="PORT")
     line.add_argument("--parts", type=int, default=24)
     line.add_argument("--accept-simulated", action="store_true", help="take verdicts on pictures of an emulated camera")
     return parser
@@ -83,13 +84,18 @@ def _run(arguments: argparse.Namespace) -> int:
     from station.settings import load
 
     load(arguments.settings)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     module = [sys.executable, "-m", "station"]
     panel = subprocess.Popen([*module, "panel", "-c", str(arguments.settings)])
     try:
         return _engine(arguments)
     finally:
         panel.terminate()
-        panel.wait(timeout=10)
+        try:
+            panel.wait(timeout=10)
+        except subprocess.TimeoutExpired:
+            panel.kill()
+            panel.wait()
 
 
 def _replay(arguments: argparse.Namespace) -> int:
@@ -108,8 +114,8 @@ def _replay(arguments: argparse.Namespace) -> int:
         )
     )
     for target in (arguments.json, arguments.csv):
-        if target is not None and not target.resolve().parent.is_dir():
-            raise WeldgateError(f"{target}: its folder does not exist")
+        if target is not None and (target.is_dir() or not os.access(target.resolve().parent, os.W_OK)):
+            raise WeldgateError(f"{target}: cannot be written there; name a file in a writable folder")
     inspector, _ = load_inspector(settings)
     base = Path(os.path.commonpath([f.resolve().parent for f in files]))
     entries: dict[str, dict[str, Any]] = {}
@@ -142,13 +148,15 @@ def _records(arguments: argparse.Namespace) -> int:
     from station.archive import read_records
 
     bad = 0
-    for path, record, problem in read_records(arguments.folder):
+    for entry in read_records(arguments.folder):
+        record = entry.record
         if record is not None:
-            reason = record.inspection.reason or ""
+            late = {True: "", False: "  (came too late for the PLC)", None: "  (unknown whether the PLC saw it)"}[entry.shown_to_plc]
+            reason = f"{record.inspection.reason or ''}{late}"
             print(f"{record.inspection_id:8d}  {record.grabbed_at:%Y-%m-%d %H:%M:%S}  {record.verdict:5}  {record.serial:20}  {reason}")
-        if problem is not None:
+        if entry.problem is not None:
             bad += 1
-            print(f"weldgate: {path}: {problem}", file=sys.stderr)
+            print(f"weldgate: {entry.path}: {entry.problem}", file=sys.stderr)
     return 1 if bad else 0
 
 

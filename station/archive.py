@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from station.domain import Frame, Inspection, Origin
 from station.errors import ImageError, RecordError
+from station.filelock import FolderLock
 from station.imagefile import encode_png
 from station.records import Provenance, Record, from_json, to_json
 from station.settings import ArchiveSettings
@@ -56,10 +57,13 @@ class Archive:
         self._min_free_bytes = settings.min_free_mb * 1_000_000
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
+            self._lock = FolderLock(self._folder)
             self._index = sqlite3.connect(self._folder / "index.sqlite", timeout=2.0, check_same_thread=False)
             self._index.execute("PRAGMA journal_mode = WAL")
             self._index.execute("PRAGMA synchronous = FULL")
             self._index.executescript(SCHEMA)
+        except BlockingIOError:
+            raise RecordError(f"{self._folder}: another engine keeps its records there; stop it or set archive.folder") from None
         except (OSError, sqlite3.Error) as error:
             raise RecordError(f"{self._folder}: records cannot be kept there ({error}); set archive.folder to a writable folder") from None
         self._encoder = ThreadPoolExecutor(1, "encode")
@@ -68,6 +72,7 @@ class Archive:
         """Finish and close the index."""
         self._encoder.shutdown(wait=True)
         self._index.close()
+        self._lock.close()
 
     def has_room(self) -> bool:
         """Whether the disk has the room that the settings ask for."""
@@ -86,7 +91,7 @@ class Archive:
         """Make the record durable and return it. Raises RecordError; then nothing is listed."""
         try:
             return self._commit(pending, inspection, serial, trigger_id, provenance, origin, now)
-        except (OSError, sqlite3.Error, ImageError) as error:
+        except (OSError, sqlite3.Error, ImageError, ValueError) as error:
             if self._index.in_transaction:
                 self._index.rollback()
             raise RecordError(f"{self._folder}: the record could not be written: {error}") from None
@@ -105,7 +110,9 @@ class Archive:
         row = self._index.execute("SELECT seq FROM sqlite_sequence WHERE name = 'records'").fetchone()
         inspection_id = 1 + (row[0] if row else 0)
         day = self._folder / f"{now:%Y-%m-%d}"
-        day.mkdir(exist_ok=True)
+        if not day.exists():
+            day.mkdir()
+            _sync_folder(self._folder)
         frame_file = sha256 = None
         if pending.frame is not None and pending.png is not None:
             png = pending.png.result()
@@ -148,35 +155,48 @@ class Archive:
         return record
 
 
-def read_records(folder: Path) -> Iterator[tuple[Path, Record | None, str | None]]:
-    """All listed records in order: (file, record, None), or (file, None, what is wrong with it).
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """One entry of the index: its file, the record if it can be read, and what is wrong with it, if anything."""
+
+    path: Path
+    record: Record | None
+    problem: str | None
+    shown_to_plc: bool | None
+    """None: the station stopped before it could tell."""
+
+
+def read_records(folder: Path) -> Iterator[Listed]:
+    """All listed records in order.
 
     Raises RecordError if the folder holds no archive.
     """
     index = folder / "index.sqlite"
     if not index.is_file():
         raise RecordError(f"{folder}: no records here (index.sqlite is missing); name an archive folder")
-    with closing(sqlite3.connect(f"file:{index}?mode=ro", uri=True)) as connection:
-        try:
-            rows = connection.execute("SELECT record_file, record_sha256 FROM records ORDER BY inspection_id").fetchall()
-        except sqlite3.Error as error:
-            raise RecordError(f"{index}: not a readable index ({error})") from None
-    for name, digest in rows:
-        path = folder / name
-        try:
-            text = path.read_bytes()
-        except OSError as error:
-            yield path, None, f"cannot be read ({error.strerror})"
-            continue
-        if hashlib.sha256(text).hexdigest() != digest:
-            yield path, None, "was changed after it was written"
-            continue
-        try:
-            record = from_json(text)
-        except ValidationError:
-            yield path, None, "is not a record of this version"
-            continue
-        yield path, record, _frame_problem(folder, record)
+    query = "SELECT record_file, record_sha256, shown_to_plc FROM records ORDER BY inspection_id"
+    try:
+        with closing(sqlite3.connect(index.resolve().as_uri() + "?mode=ro", uri=True)) as connection:
+            rows = connection.execute(query).fetchall()
+    except sqlite3.Error as error:
+        raise RecordError(f"{index}: not a readable index ({error})") from None
+    for name, digest, shown in rows:
+        record, problem = _read(folder, folder / name, digest)
+        yield Listed(folder / name, record, problem, None if shown is None else bool(shown))
+
+
+def _read(folder: Path, path: Path, digest: str) -> tuple[Record | None, str | None]:
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        return None, f"cannot be read ({error.strerror})"
+    if hashlib.sha256(text).hexdigest() != digest:
+        return None, "was changed after it was written"
+    try:
+        record = from_json(text)
+    except ValidationError:
+        return None, "is not a record of this version"
+    return record, _frame_problem(folder, record)
 
 
 def _frame_problem(folder: Path, record: Record) -> str | None:

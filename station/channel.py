@@ -43,6 +43,7 @@ class Publisher:
         socket = self._context.socket(zmq.PUB)
         socket.setsockopt(zmq.SNDHWM, high_water)
         socket.setsockopt(zmq.LINGER, 0)
+        socket.setsockopt(zmq.IPV6, 1)
         return socket
 
     def send(self, event: Event) -> None:
@@ -72,6 +73,7 @@ class Subscriber:
             socket.setsockopt(zmq.CONFLATE, 1)
         socket.setsockopt(zmq.RECONNECT_IVL_MAX, 1000)
         socket.setsockopt(zmq.SUBSCRIBE, b"")
+        socket.setsockopt(zmq.IPV6, 1)
         socket.connect(_address(settings, port))
         return socket
 

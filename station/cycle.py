@@ -10,17 +10,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
-from station.archive import Archive
+from station.archive import Archive, Pending
 from station.camera.port import Camera
 from station.classify.decision import segment_kind
 from station.domain import SEGMENTS, Frame, Inspection, Origin, Reason, Timing, Verdict
-from station.errors import CameraLost, FrameDamaged, FrameTimeout, RecordError
+from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError
 from station.events import Counts, Event, PartEvent, Preview, StatusEvent
 from station.inspection import Inspector
 from station.plc.port import Health, Line, Result, Trigger
 from station.plc.registers import REASON_CODES, Flags, Offline, Status, VerdictCode
 from station.preview import make_preview
-from station.records import Provenance
+from station.records import Provenance, Record
 
 log = logging.getLogger("weldgate.cycle")
 
@@ -133,34 +133,55 @@ class Cycle:
         """A fault nobody foresaw costs one part, not the station: the handshake answers ERROR at its deadline."""
         try:
             self._part(trigger)
+        except LineError:
+            raise
         except Exception:
             log.exception("part of trigger %d was not answered", trigger.trigger_id)
 
     def _part(self, trigger: Trigger) -> None:
-        frame, inspection = self._grab()
-        self._line.exposure_done(trigger.trigger_id)
+        frame, inspection = self._take(trigger)
         pending = self._archive.begin(frame)
         if frame is not None:
             inspection = self._judge(frame, inspection.timing)
         start = time.perf_counter()
-        record = None
-        try:
-            record = self._archive.commit(
-                pending, inspection, trigger.serial, trigger.trigger_id, self._provenance, self._origin, datetime.now(UTC)
-            )
-        except RecordError as error:
-            log.error("%s", error)
-            inspection = Inspection.error(Reason.RECORD_FAILED, inspection.ring, inspection.quality, inspection.timing)
+        record = self._record(trigger, pending, inspection)
         record_ms = (time.perf_counter() - start) * 1000
         start = time.perf_counter()
-        shown = self._line.publish(self._result(trigger, inspection, 0 if record is None else record.inspection_id))
+        shown = self._line.publish(self._result(trigger, record))
         publish_ms = (time.perf_counter() - start) * 1000
-        self._count(inspection.verdict)
-        if record is not None:
+        self._count(record.verdict if shown else Verdict.ERROR)
+        if not shown:
+            log.warning(
+                "part %d, %s: came too late, the PLC was not shown its verdict %s", record.inspection_id, record.serial, record.verdict
+            )
+        self._mark(record, shown)
+        self._listener.event(PartEvent(record, self._seg_nok(record.inspection), shown, record_ms, publish_ms))
+        if frame is not None:
+            self._listener.preview(make_preview(record.inspection_id, frame.image, record.inspection.ring))
+
+    def _mark(self, record: Record, shown: bool) -> None:
+        try:
             self._archive.mark_shown(record.inspection_id, shown)
-            self._listener.event(PartEvent(record, self._seg_nok(inspection), shown, record_ms, publish_ms))
-            if frame is not None:
-                self._listener.preview(make_preview(record.inspection_id, frame.image, inspection.ring))
+        except RecordError as error:
+            log.error("%s", error)
+
+    def _take(self, trigger: Trigger) -> tuple[Frame | None, Inspection]:
+        """The frame of this trigger's part; none if the trigger is over and another part may lie there."""
+        if not self._line.in_work(trigger):
+            return None, Inspection.error(Reason.ABORTED)
+        frame, inspection = self._grab()
+        self._line.exposure_done(trigger)
+        return frame, inspection
+
+    def _record(self, trigger: Trigger, pending: Pending, inspection: Inspection) -> Record:
+        """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
+        now = datetime.now(UTC)
+        try:
+            return self._archive.commit(pending, inspection, trigger.serial, trigger.trigger_id, self._provenance, self._origin, now)
+        except RecordError as error:
+            log.error("%s", error)
+        failed = Inspection.error(Reason.RECORD_FAILED, inspection.ring, inspection.quality, inspection.timing)
+        return Record(0, trigger.serial, trigger.trigger_id, now, "", self._origin, None, None, failed, self._provenance)
 
     def _grab(self) -> tuple[Frame | None, Inspection]:
         """A frame, or why there is none."""
@@ -192,17 +213,17 @@ class Cycle:
     def _seg_nok(self, inspection: Inspection) -> tuple[bool, ...]:
         return tuple(segment_kind(s, self._inspector.thresholds) is not None for s in inspection.scores)
 
-    def _result(self, trigger: Trigger, inspection: Inspection, inspection_id: int) -> Result:
+    def _result(self, trigger: Trigger, record: Record) -> Result:
+        inspection = record.inspection
         nok = self._seg_nok(inspection)
         reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]
         return Result(
-            trigger_id=trigger.trigger_id,
-            serial=trigger.serial,
+            trigger=trigger,
             verdict=verdict_code(inspection.verdict, self._origin),
-            inspection_id=inspection_id,
+            inspection_id=record.inspection_id,
             reason=reason,
             error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
-            seg_scores=tuple(round(s.nok * 10_000) for s in inspection.scores),
+            seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
             seg_nok_mask=sum(1 << i for i, bad in enumerate(nok) if bad),
             seg_invalid_mask=0 if inspection.scores else (1 << SEGMENTS) - 1,
             flags=Flags.SIMULATED if self._origin is Origin.SIMULATED else Flags(0),

@@ -10,6 +10,7 @@ from station.errors import ImageError
 
 SUFFIXES = frozenset((".png", ".bmp", ".tif", ".tiff", ".jpg", ".jpeg"))
 MAX_BYTES = 512 * 1024 * 1024
+MAX_SIDE_PX = 32_000
 
 
 def read_image(path: Path) -> Image:
@@ -31,12 +32,14 @@ def read_image(path: Path) -> Image:
             image = None
     if image is None:
         raise ImageError(f"{path}: not a readable image; PNG, BMP, TIFF or JPEG is needed")
+    if image.dtype not in (np.uint8, np.uint16):
+        raise ImageError(f"{path}: pixels are {image.dtype}; 8 or 16 bit is needed")
+    if max(image.shape[:2]) > MAX_SIDE_PX:
+        raise ImageError(f"{path}: {image.shape[1]} x {image.shape[0]} px; at most {MAX_SIDE_PX} px a side")
     if image.ndim == 3:
-        image = cv2.cvtColor(image[:, :, :3], cv2.COLOR_BGR2GRAY)
+        image = image[:, :, 0] if image.shape[2] < 3 else cv2.cvtColor(np.ascontiguousarray(image[:, :, :3]), cv2.COLOR_BGR2GRAY)
     if image.dtype == np.uint16:
         image = np.asarray(image // 256, np.uint8)
-    if image.dtype != np.uint8:
-        raise ImageError(f"{path}: pixels are {image.dtype}; 8 or 16 bit is needed")
     return np.ascontiguousarray(image)
 
 

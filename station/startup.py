@@ -4,7 +4,10 @@ import logging
 import signal
 import threading
 import zlib
+from collections.abc import Callable
+from contextlib import ExitStack, closing
 from types import FrameType
+from typing import TypeVar
 
 from station import __version__
 from station.archive import Archive
@@ -19,6 +22,8 @@ from station.records import Provenance
 from station.settings import PylonSettings, Settings
 
 log = logging.getLogger("weldgate")
+
+Opened = TypeVar("Opened")
 
 
 def make_camera(settings: Settings) -> Camera:
@@ -65,25 +70,23 @@ def run_engine(settings: Settings) -> None:
     signal.signal(signal.SIGINT, on_signal)
     signal.signal(signal.SIGTERM, on_signal)
 
-    problems: list[str] = []
-    loaded = archive = publisher = None
-    line = ModbusServerLine(settings.plc)
-    try:
-        try:
-            loaded = load_inspector(settings)
-        except WeldgateError as error:
-            problems.append(str(error))
-        if not problems:
+    with ExitStack() as stack:
+        problems: list[str] = []
+
+        def tried(make: Callable[[], Opened]) -> Opened | None:
             try:
-                archive = Archive(settings.archive)
+                return make()
             except WeldgateError as error:
                 problems.append(str(error))
-        try:
-            publisher = Publisher(settings.channel)
-        except WeldgateError as error:
-            problems.append(str(error))
-        if problems or loaded is None or archive is None or publisher is None:
+                return None
+
+        loaded = tried(lambda: load_inspector(settings))
+        publisher = tried(lambda: stack.enter_context(closing(Publisher(settings.channel))))
+        archive = tried(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
+        if problems or loaded is None or publisher is None or archive is None:
             raise WeldgateError("; ".join(problems))
+        line = ModbusServerLine(settings.plc)
+        stack.callback(line.stop)
         line.start()
         inspector, provenance = loaded
         log.info("station up: model %s, PLC on port %d", provenance.model_version, line.port)
@@ -98,9 +101,3 @@ def run_engine(settings: Settings) -> None:
             reconnect_s=settings.camera.reconnect_s if isinstance(settings.camera, PylonSettings) else 1.0,
         )
         cycle.run(stop)
-    finally:
-        line.stop()
-        if publisher is not None:
-            publisher.close()
-        if archive is not None:
-            archive.close()

@@ -18,6 +18,8 @@ class ReplayCamera:
     def open(self) -> None:
         """List the folder; goes on where it stood if opened again. Raises CameraLost."""
         if self._files is not None:
+            if not self._files:
+                raise CameraLost(f"{self._folder}: no more images")
             return
         try:
             names = sorted(p.name for p in self._folder.iterdir() if p.suffix.lower() in SUFFIXES)

@@ -47,7 +47,8 @@ class Classifier:
     def __call__(self, crops: Image) -> tuple[SegmentScores, ...]:
         """Scores of crops (K, 128, 128) uint8. Raises ModelError if the answer is not K finite probabilities."""
         p = _run(self._session, "probabilities", {"crops": crops[:, None]})
-        if p.shape != (len(crops), 3) or not np.isfinite(p).all() or np.abs(p.sum(axis=1) - 1).max(initial=0) > 1e-3:
+        fit = p.shape == (len(crops), 3) and bool(((p >= 0) & (p <= 1)).all()) and bool((np.abs(p.sum(axis=1) - 1) <= 1e-3).all())
+        if not fit:
             raise ModelError(f"inference gave no probabilities (shape {p.shape})")
         return tuple(SegmentScores(float(a), float(b), float(c)) for a, b, c in p)
 

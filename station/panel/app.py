@@ -1,5 +1,6 @@
 """The panel's process."""
 
+import os
 import signal
 import sys
 
@@ -7,6 +8,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from station.channel import Subscriber
+from station.errors import WeldgateError
 from station.panel.bridge import Bridge
 from station.panel.window import Window
 from station.settings import Settings
@@ -14,6 +16,8 @@ from station.settings import Settings
 
 def run_panel(settings: Settings) -> int:
     """Show the window until it is closed, or until SIGINT or SIGTERM."""
+    if sys.platform == "linux" and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
+        raise WeldgateError("no display for the window; set DISPLAY, or run 'weldgate engine' alone")
     app = QApplication.instance() or QApplication(sys.argv[:1])
     window = Window(Bridge(Subscriber(settings.channel)))
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -27,7 +27,9 @@ def lamp(status: StatusEvent | None, status_age_s: float, part: PartEvent | None
     """State of the lamp from what was last heard and how long ago."""
     if status is None or status_age_s > STATUS_LOST_S:
         return Lamp("OFFLINE", "○", theme.QUIET, 1.0, "no word from the engine")
-    if part is not None and part_age_s <= GONE_S:
+    lost = status.offline in (Offline.PLC_SILENT, Offline.CAMERA_LOST, Offline.STATION_STALLED)
+    good = part is not None and part.record.verdict is Verdict.OK
+    if part is not None and part_age_s <= GONE_S and not (good and lost):
         return _of_part(part, _fade(part_age_s))
     if status.offline is Offline.PLC_SILENT:
         return Lamp("PLC LOST", "⚠", theme.WARN, 1.0, "the PLC's heartbeat stands still")

@@ -40,7 +40,7 @@ def as_markdown() -> str:
     text += "\n## OFFLINE_REASON\n\n" + _table(("value", "name"), [(str(int(v)), v.name) for v in Offline])
     text += "\n## REASON\n\n" + _table(("value", "meaning"), [(str(code), str(reason)) for reason, code in REASON_CODES.items()])
     text += "\nERROR_CODE is 16#1000 + REASON when a part could not be judged; 16#2101 deadline missed, 16#2102 aborted,\n"
-    text += "16#2103 TRIGGER_ID 0 or repeated, 16#2104 a PLC bit is stuck.\n"
+    text += "16#2103 TRIGGER_ID 0 or repeated, 16#2104 a PLC bit is stuck, 16#2105 golden check asked for but not built yet.\n"
     return text
 
 

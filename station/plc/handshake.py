@@ -21,7 +21,8 @@ ERROR_DEADLINE = 0x2101
 ERROR_ABORTED = 0x2102
 ERROR_BAD_TRIGGER_ID = 0x2103
 ERROR_STUCK_BIT = 0x2104
-NO_CONTROL = Control(0)
+ERROR_NO_GOLDEN_CHECK = 0x2105
+ALL_CONTROL = Control(0xFF)
 ALL_SEGMENTS = (1 << SEGMENTS) - 1
 
 
@@ -60,6 +61,7 @@ class Inputs:
     health: Health
     health_age_s: float
     exposure_done_for: int | None = None
+    """Number of the trigger whose picture is taken."""
     result: Result | None = None
 
 
@@ -68,9 +70,12 @@ class State:
     """All that the handshake remembers."""
 
     phase: Phase = Phase.OFFLINE
-    control: Control = NO_CONTROL
+    control: Control = ALL_CONTROL
+    """As seen last; all bits at the start, so that a bit the PLC still holds is no edge."""
     trigger: Trigger | None = None
     last_id: int = 0
+    accepted: int = 0
+    """Triggers accepted so far."""
     trigger_ack: bool = False
     exposure_done: bool = False
     missed: bool = False
@@ -107,6 +112,7 @@ class Step:
 def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
     """One step. Publish `status_window.values(step.state, ...)` before acting on the rest of the outcome."""
     rising = inputs.control & ~state.control
+    was_ready = ready(state)
     s = _clocks(state, inputs, now_s, times)
     s = replace(s, control=inputs.control)
     s = _acknowledge(s, inputs, rising, now_s, times)
@@ -134,7 +140,7 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
     elif s.phase is Phase.IDLE and offline is not Offline.NONE:
         s = replace(s, phase=Phase.OFFLINE)
     if start is None and rising & Control.TRIGGER:
-        s = _triggered(s, inputs, now_s)
+        s = _triggered(s, inputs, now_s, was_ready)
     return Step(s, start, refused, again=s.phase is Phase.WIPED)
 
 
@@ -158,7 +164,8 @@ def _clocks(s: State, inputs: Inputs, now_s: float, times: Times) -> State:
         and s.phase is not Phase.BUSY
         and now_s - s.trigger_since_s > max(times.stuck_s, times.deadline_s)
     ) or (inputs.control & s.control & Control.RESULT_ACK and now_s - s.ack_since_s > times.stuck_s)
-    return replace(s, stuck=bool(held), error_code=ERROR_STUCK_BIT if held else s.error_code)
+    newly = bool(held) and not s.stuck
+    return replace(s, stuck=bool(held), error_code=s.error_code or (ERROR_STUCK_BIT if newly else 0))
 
 
 def _acknowledge(s: State, inputs: Inputs, rising: Control, now_s: float, times: Times) -> State:
@@ -191,13 +198,13 @@ def _offline(s: State, inputs: Inputs, now_s: float, times: Times) -> Offline:
 
 
 def _busy(s: State, trigger: Trigger, inputs: Inputs, rising: Control, now_s: float, times: Times) -> tuple[State, bool]:
-    if inputs.exposure_done_for == trigger.trigger_id:
+    if inputs.exposure_done_for == trigger.number:
         s = replace(s, exposure_done=True)
     late = now_s - trigger.accepted_s > times.deadline_s
     if late or rising & Control.ABORT:
         why, code = (Reason.DEADLINE, ERROR_DEADLINE) if late else (Reason.ABORTED, ERROR_ABORTED)
         return _shown(s, _error_result(trigger, REASON_CODES[why], code), trigger, now_s), inputs.result is not None
-    if inputs.result is not None and inputs.result.trigger_id == trigger.trigger_id:
+    if inputs.result is not None and inputs.result.trigger == trigger:
         return _shown(s, inputs.result, trigger, now_s), False
     return s, inputs.result is not None
 
@@ -223,15 +230,18 @@ def _wiped(s: State) -> State:
     return replace(s, result=None, sequence=(s.sequence + 1) & 0xFFFF)
 
 
-def _triggered(s: State, inputs: Inputs, now_s: float) -> State:
-    if not ready(s):
+def _triggered(s: State, inputs: Inputs, now_s: float, was_ready: bool) -> State:
+    """READY must have been readable before the edge, and still hold."""
+    if not (was_ready and ready(s)):
         return replace(s, missed=True)
+    if inputs.control & Control.GOLDEN_CHECK:
+        return replace(s, missed=True, error_code=s.error_code or ERROR_NO_GOLDEN_CHECK)
     if inputs.trigger_id in (0, s.last_id):
-        return replace(s, missed=True, error_code=ERROR_BAD_TRIGGER_ID)
-    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s)
-    s = _wiped(s)
+        return replace(s, missed=True, error_code=s.error_code or ERROR_BAD_TRIGGER_ID)
+    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s, s.accepted + 1)
+    s = replace(_wiped(s), accepted=trigger.number)
     return replace(s, phase=Phase.WIPED, trigger=trigger, last_id=inputs.trigger_id, exposure_done=False, missed=False)
 
 
 def _error_result(trigger: Trigger, reason: int, code: int) -> Result:
-    return Result(trigger.trigger_id, trigger.serial, VerdictCode.ERROR, 0, reason, code, (), 0, ALL_SEGMENTS, Flags(0))
+    return Result(trigger, VerdictCode.ERROR, 0, reason, code, (), 0, ALL_SEGMENTS, Flags(0))

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Coroutine
 from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any, TypeVar
 
 from pymodbus.client import AsyncModbusTcpClient
@@ -80,7 +81,7 @@ class ModbusServerLine:
         self._thread.start()
         try:
             up.result(timeout=10)
-        except (OSError, RuntimeError) as error:
+        except (OSError, RuntimeError, ModbusException) as error:
             self._thread.join(timeout=5)
             self._thread = self._loop = None
             raise LineError(
@@ -91,7 +92,10 @@ class ModbusServerLine:
         """Wipe the record, close the connections, end the thread."""
         if self._thread is None or self._loop is None:
             return
-        self._call(self._close())
+        self._stopping = True
+        if self._wake is not None and not self._loop.is_closed():
+            with suppress(RuntimeError):  # the loop may end in between
+                self._loop.call_soon_threadsafe(self._wake.set)
         self._thread.join(timeout=5)
 
     def next_trigger(self, timeout_s: float) -> Trigger | None:
@@ -101,9 +105,13 @@ class ModbusServerLine:
         except queue.Empty:
             return None
 
-    def exposure_done(self, trigger_id: int) -> None:
+    def in_work(self, trigger: Trigger) -> bool:
+        """Whether this trigger still waits for its answer."""
+        return self._state.trigger is not None and self._state.trigger.number == trigger.number
+
+    def exposure_done(self, trigger: Trigger) -> None:
         """The picture is taken: the part may move."""
-        self._call(self._step(exposure_done_for=trigger_id))
+        self._call(self._step(exposure_done_for=trigger.number))
 
     def publish(self, result: Result) -> bool:
         """Offer a result; returns once it is readable. False if it came too late and was not shown."""
@@ -118,10 +126,13 @@ class ModbusServerLine:
         return dict(self._published)
 
     def _call(self, coroutine: Coroutine[Any, Any, Answer]) -> Answer:
-        if self._loop is None:
+        if self._loop is None or self._loop.is_closed():
             coroutine.close()
             raise LineError("the Modbus server is not running")
-        return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result(timeout=5)
+        try:
+            return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result(timeout=5)
+        except TimeoutError:
+            raise LineError("the Modbus server does not answer") from None
 
     async def _run(self, up: "Future[None]") -> None:
         self._loop = asyncio.get_running_loop()
@@ -146,14 +157,17 @@ class ModbusServerLine:
             up.set_exception(error)
             return
         up.set_result(None)
-        while not self._stopping:
-            self._wake.clear()
-            await self._step()
-            try:
-                await asyncio.wait_for(self._wake.wait(), TICK_S)
-            except TimeoutError:
-                continue
-        await self._server.shutdown()  # type: ignore[no-untyped-call]
+        try:
+            while not self._stopping:
+                self._wake.clear()
+                await self._step()
+                try:
+                    await asyncio.wait_for(self._wake.wait(), TICK_S)
+                except TimeoutError:
+                    continue
+        finally:
+            await self._server.async_setValues(1, WRITE, STATUS_START, [0] * STATUS_WORDS)
+            await self._server.shutdown()  # type: ignore[no-untyped-call]
 
     async def _gate(
         self, function: int, _start: int, address: int, count: int, _current: list[int], values: list[int] | list[bool] | None
@@ -161,19 +175,13 @@ class ModbusServerLine:
         """Clients may write the command window only; each write wakes the handshake."""
         if function not in CLIENT_WRITES or values is None:
             return None
-        end = address + count
-        if function in (5, 15):
-            end = (end + 15) // 16
+        first = address // 16 if function in (5, 15) else address
+        end = first + count  # pymodbus counts registers here, for bits too
         if end > COMMAND_START + COMMAND_WORDS:
             return ExcCodes.ILLEGAL_ADDRESS
         if self._wake is not None:
             asyncio.get_running_loop().call_soon(self._wake.set)
         return None
-
-    async def _close(self) -> None:
-        self._stopping = True
-        if self._wake is not None:
-            self._wake.set()
 
     async def _check_in(self, health: Health) -> None:
         self._health, self._health_s = health, time.monotonic()

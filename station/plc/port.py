@@ -14,14 +14,15 @@ class Trigger:
     serial: str
     accepted_s: float
     """Monotonic time."""
+    number: int
+    """Counts accepted triggers; never repeats, unlike the PLC's 16-bit id."""
 
 
 @dataclass(frozen=True, slots=True)
 class Result:
     """What is published for one trigger. Scores x 10000; masks over segments."""
 
-    trigger_id: int
-    serial: str
+    trigger: Trigger
     verdict: VerdictCode
     inspection_id: int
     reason: int
@@ -56,7 +57,10 @@ class Line(Protocol):
     def next_trigger(self, timeout_s: float) -> Trigger | None:
         """The next accepted trigger, or None."""
 
-    def exposure_done(self, trigger_id: int) -> None:
+    def in_work(self, trigger: Trigger) -> bool:
+        """Whether this trigger still waits for its answer; if not, its part may be gone."""
+
+    def exposure_done(self, trigger: Trigger) -> None:
         """The picture is taken: the part may move."""
 
     def publish(self, result: Result) -> bool:

@@ -2,7 +2,9 @@
 
 import asyncio
 import time
+from collections.abc import Awaitable
 from dataclasses import dataclass
+from typing import TypeVar
 
 from station.errors import LineError
 from station.plc.modbus import ModbusClient
@@ -18,6 +20,8 @@ from station.plc.registers import (
     pack,
     unpack_window,
 )
+
+Outcome = TypeVar("Outcome")
 
 POLL_S = 0.004
 HEARTBEAT_S = 0.1
@@ -73,6 +77,7 @@ class SimulatedLine:
         self._seen_s = -1e9
         self._trigger_id = 0
         self._crc: int | None = None
+        self._connected = False
 
     async def connect(self, timeout_s: float = 30.0) -> None:
         """Connect, waiting for a station that is still starting. Raises LineError."""
@@ -85,12 +90,21 @@ class SimulatedLine:
                 if time.monotonic() > until:
                     raise
                 await asyncio.sleep(0.2)
-        last = number(await self._read(), "ACK_TRIGGER_ID")
-        self._trigger_id = last
+        self._connected = True
+        self._trigger_id = number(await self._read(), "ACK_TRIGGER_ID")
 
     def close(self) -> None:
         """Drop the connection."""
         self._client.close()
+
+    async def meanwhile(self, work: Awaitable[Outcome]) -> Outcome:
+        """Keep the heartbeat going until `work` is done."""
+        task = asyncio.ensure_future(work)
+        while not task.done():
+            if self._connected:
+                await self._read()
+            await asyncio.wait((task,), timeout=HEARTBEAT_S / 2)
+        return task.result()
 
     async def wait_ready(self, timeout_s: float) -> bool:
         """Hold ENABLE and the heartbeat until READY; False after the time."""

@@ -55,14 +55,14 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
     if shown is not None:
         worst = max(range(len(shown.seg_scores)), key=lambda i: shown.seg_scores[i], default=0)
         window |= {
-            "RESULT_TRIGGER_ID": shown.trigger_id,
+            "RESULT_TRIGGER_ID": shown.trigger.trigger_id,
             "INSPECTION_ID": shown.inspection_id & 0xFFFFFFFF,
             "REASON": shown.reason,
             "SEG_NOK_MASK": shown.seg_nok_mask,
             "SEG_INVALID_MASK": shown.seg_invalid_mask,
             "T_PROCESS_MS": s.process_ms,
             "RESULT_AGE_10MS": min(0xFFFF, int((now_s - s.shown_s) * 100)),
-            "SERIAL_ECHO": shown.serial,
+            "SERIAL_ECHO": shown.trigger.serial,
             "FLAGS": int(shown.flags),
         }
         if shown.seg_scores:

@@ -36,14 +36,15 @@ def test_what_is_written_reads_back_whole(archive: Archive, tmp_path: Path, rng:
         put(archive, None, Inspection.error(Reason.NO_FRAME)),
     ]
     read = list(read_records(tmp_path))
-    assert [r for _, r, _ in read] == written
-    assert all(problem is None for _, _, problem in read)
+    assert [e.record for e in read] == written
+    assert all(e.problem is None for e in read)
     assert written[0].frame_file is not None
     assert (read_image(tmp_path / written[0].frame_file) == image).all()
 
 
 def test_numbers_go_on_after_a_restart(archive: Archive, tmp_path: Path) -> None:
     first = put(archive, None, Inspection.error(Reason.NO_FRAME))
+    archive.close()
     again = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1))
     assert put(again, None, Inspection.error(Reason.NO_FRAME)).inspection_id == first.inspection_id + 1
     again.close()
@@ -56,17 +57,17 @@ def test_a_changed_file_is_named(suffix: str, said: str, archive: Archive, tmp_p
     data = bytearray(path.read_bytes())
     data[len(data) // 2] ^= 1
     path.write_bytes(data)
-    ((_, _, problem),) = read_records(tmp_path)
-    assert problem is not None
-    assert said in problem
+    (entry,) = read_records(tmp_path)
+    assert entry.problem is not None
+    assert said in entry.problem
 
 
 def test_a_deleted_frame_is_named(archive: Archive, tmp_path: Path) -> None:
     put(archive, np.zeros((8, 8), np.uint8), ok_inspection())
     next(tmp_path.rglob("*.png")).unlink()
-    ((_, record, problem),) = read_records(tmp_path)
-    assert record is not None
-    assert problem is not None
+    (entry,) = read_records(tmp_path)
+    assert entry.record is not None
+    assert entry.problem is not None
 
 
 def test_a_locked_index_is_an_error_and_lists_nothing(archive: Archive, tmp_path: Path) -> None:
@@ -78,6 +79,26 @@ def test_a_locked_index_is_an_error_and_lists_nothing(archive: Archive, tmp_path
     other.close()
     assert list(read_records(tmp_path)) == []
     put(archive, None, Inspection.error(Reason.NO_FRAME))
+
+
+def test_a_second_engine_is_refused(archive: Archive, tmp_path: Path) -> None:
+    with pytest.raises(RecordError, match="another engine"):
+        Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1))
+
+
+def test_the_index_says_whether_the_plc_was_shown(archive: Archive, tmp_path: Path) -> None:
+    for shown in (True, False):
+        archive.mark_shown(put(archive, None, Inspection.error(Reason.NO_FRAME)).inspection_id, shown)
+    put(archive, None, Inspection.error(Reason.NO_FRAME))
+    assert [e.shown_to_plc for e in read_records(tmp_path)] == [True, False, None]
+
+
+def test_odd_folder_names_are_read(tmp_path: Path) -> None:
+    folder = tmp_path / "rec#1 %41?ä"
+    kept = Archive(ArchiveSettings(folder=folder, min_free_mb=1))
+    put(kept, None, Inspection.error(Reason.NO_FRAME))
+    kept.close()
+    assert len(list(read_records(folder))) == 1
 
 
 def test_a_file_in_the_way_of_the_folder_is_said(tmp_path: Path) -> None:

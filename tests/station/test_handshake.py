@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from station.plc import status_window
-from station.plc.handshake import Inputs, Phase, State, Step, Times, ready, step
-from station.plc.port import Health, Result
+from station.plc.handshake import Inputs, State, Step, Times, ready, step
+from station.plc.port import Health, Result, Trigger
 from station.plc.registers import Control, Flags, Offline, Status, VerdictCode, number
 
 WELL = Health(True, Offline.NONE, False, 7)
@@ -16,8 +16,8 @@ TIMES = Times()
 ON = Control.ENABLE
 
 
-def result(trigger_id: int, verdict: VerdictCode = VerdictCode.OK) -> Result:
-    return Result(trigger_id, "S", verdict, 9, 0, 0x1001 if verdict is VerdictCode.ERROR else 0, (0,) * 21, 0, 0, Flags(0))
+def result(trigger: Trigger, verdict: VerdictCode = VerdictCode.OK) -> Result:
+    return Result(trigger, verdict, 9, 0, 0x1001 if verdict is VerdictCode.ERROR else 0, (0,) * 21, 0, 0, Flags(0))
 
 
 class Driver:
@@ -26,7 +26,7 @@ class Driver:
     def __init__(self) -> None:
         self.state, self.now, self.beat = State(), 100.0, 0
         self.control, self.trigger_id, self.health, self.silent, self.command = Control(0), 0, WELL, False, 0
-        self.started: list[int] = []
+        self.started: list[Trigger] = []
 
     def step(self, offered: Result | None = None, wait_s: float = 0.01, exposed: int | None = None) -> Step:
         self.now += wait_s
@@ -35,7 +35,7 @@ class Driver:
         outcome = step(self.state, inputs, self.now, TIMES)
         self.state = outcome.state
         if outcome.start is not None:
-            self.started.append(outcome.start.trigger_id)
+            self.started.append(outcome.start)
         if outcome.again:
             self.step(wait_s=0)
         return outcome
@@ -65,13 +65,13 @@ def test_a_part_from_trigger_to_acknowledge(plc: Driver) -> None:
     assert Status.READY in plc.bits()
     plc.trigger(1)
     assert plc.bits() & (Status.TRIGGER_ACK | Status.BUSY | Status.RESULT_VALID) == Status.TRIGGER_ACK | Status.BUSY
-    assert plc.started == [1]
-    plc.step(exposed=1)
+    assert [t.trigger_id for t in plc.started] == [1]
+    plc.step(exposed=plc.started[-1].number)
     assert Status.EXPOSURE_DONE in plc.bits()
     plc.control = ON
     plc.step()
     assert Status.TRIGGER_ACK not in plc.bits()
-    assert not plc.step(result(1)).refused
+    assert not plc.step(result(plc.started[-1])).refused
     assert plc.bits() & (Status.RESULT_VALID | Status.OK | Status.NOK) == Status.RESULT_VALID | Status.OK
     plc.control = ON | Control.RESULT_ACK
     plc.step()
@@ -84,7 +84,7 @@ def test_a_part_from_trigger_to_acknowledge(plc: Driver) -> None:
 
 def test_the_old_result_is_gone_before_trigger_ack(plc: Driver) -> None:
     plc.trigger(1)
-    plc.step(result(1))
+    plc.step(result(plc.started[-1]))
     plc.control = ON
     plc.step()
     plc.control, plc.trigger_id = ON | Control.TRIGGER, 2
@@ -100,9 +100,9 @@ def test_the_old_result_is_gone_before_trigger_ack(plc: Driver) -> None:
 @pytest.mark.parametrize("trigger_id", [0, 1])
 def test_zero_and_repeated_ids_are_missed(trigger_id: int, plc: Driver) -> None:
     plc.trigger(1)
-    plc.step(result(1))
+    plc.step(result(plc.started[-1]))
     plc.trigger(trigger_id)
-    assert plc.started == [1]
+    assert [t.trigger_id for t in plc.started] == [1]
     assert Status.MISSED_TRIGGER in plc.bits()
     assert plc.values()["ERROR_CODE"] == 0x2103
 
@@ -110,7 +110,7 @@ def test_zero_and_repeated_ids_are_missed(trigger_id: int, plc: Driver) -> None:
 def test_a_trigger_while_busy_is_missed(plc: Driver) -> None:
     plc.trigger(1)
     plc.trigger(2)
-    assert plc.started == [1]
+    assert [t.trigger_id for t in plc.started] == [1]
     assert Status.MISSED_TRIGGER in plc.bits()
 
 
@@ -118,7 +118,7 @@ def test_a_late_result_is_error_and_stays_error(plc: Driver) -> None:
     plc.trigger(1)
     plc.step(wait_s=TIMES.deadline_s + 0.1)
     assert plc.values()["VERDICT"] == VerdictCode.ERROR
-    assert plc.step(result(1)).refused
+    assert plc.step(result(plc.started[-1])).refused
     assert plc.values()["VERDICT"] == VerdictCode.ERROR
 
 
@@ -132,7 +132,7 @@ def test_abort_gives_error(plc: Driver) -> None:
 
 def test_an_unread_result_is_wiped_after_its_time(plc: Driver) -> None:
     plc.trigger(1)
-    plc.step(result(1))
+    plc.step(result(plc.started[-1]))
     plc.control = ON
     plc.step(wait_s=TIMES.result_ttl_s + 0.1)
     assert plc.values()["VERDICT"] == 0
@@ -141,7 +141,7 @@ def test_an_unread_result_is_wiped_after_its_time(plc: Driver) -> None:
 @pytest.mark.parametrize("how", ["disable", "offline", "silent"])
 def test_leaving_the_line_wipes_the_result(how: str, plc: Driver) -> None:
     plc.trigger(1)
-    plc.step(result(1))
+    plc.step(result(plc.started[-1]))
     plc.control = {"disable": Control(0), "offline": ON | Control.SET_OFFLINE, "silent": ON}[how]
     plc.silent = how == "silent"
     plc.step(wait_s=TIMES.plc_heartbeat_s + 0.1)
@@ -157,8 +157,54 @@ def test_a_result_for_a_part_that_was_dropped_is_never_shown(plc: Driver) -> Non
     plc.step()
     plc.control = ON
     plc.step()
-    assert plc.step(result(1)).refused
+    assert plc.step(result(plc.started[-1])).refused
     assert plc.values()["VERDICT"] == 0
+
+
+def test_a_late_result_never_answers_a_newer_part_of_the_same_id(plc: Driver) -> None:
+    plc.trigger(1)
+    late = plc.started[-1]
+    for trigger_id in (2, 1):
+        plc.control |= Control.ABORT
+        plc.step()
+        plc.trigger(trigger_id)
+    assert plc.started[-1].trigger_id == late.trigger_id
+    assert plc.step(result(late)).refused
+    assert plc.values()["VERDICT"] == 0
+
+
+def test_a_bit_held_over_a_restart_is_no_edge() -> None:
+    driver = Driver()
+    driver.control, driver.trigger_id = ON | Control.TRIGGER, 5
+    for _ in range(3):
+        driver.step()
+    assert driver.started == []
+
+
+def test_a_trigger_in_the_step_of_the_result_does_not_swallow_it(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.control = ON
+    plc.step()
+    plc.control, plc.trigger_id = ON | Control.TRIGGER, 2
+    plc.step(result(plc.started[-1]))
+    assert Status.RESULT_VALID in plc.bits()
+    assert Status.MISSED_TRIGGER in plc.bits()
+
+
+def test_a_golden_check_is_refused_and_said(plc: Driver) -> None:
+    plc.control, plc.trigger_id = ON | Control.TRIGGER | Control.GOLDEN_CHECK, 3
+    plc.step()
+    assert plc.started == []
+    assert plc.values()["ERROR_CODE"] == 0x2105
+
+
+def test_the_first_error_code_stays_until_cleared(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(plc.started[-1], VerdictCode.ERROR))
+    plc.control = ON | Control.RESULT_ACK
+    for _ in range(60):
+        plc.step(wait_s=0.1)
+    assert plc.values()["ERROR_CODE"] == 0x1001
 
 
 def test_camera_lost_says_why_not_ready(plc: Driver) -> None:
@@ -183,7 +229,7 @@ def test_stuck_acknowledge_is_released_with_an_alarm(plc: Driver) -> None:
 
 def test_clear_error(plc: Driver) -> None:
     plc.trigger(1)
-    plc.step(result(1, VerdictCode.ERROR))
+    plc.step(result(plc.started[-1], VerdictCode.ERROR))
     assert Status.ERROR in plc.bits()
     plc.control = ON | Control.CLEAR_ERROR
     plc.step()
@@ -202,13 +248,12 @@ def test_the_heartbeat_stands_still_when_the_inspection_does(plc: Driver) -> Non
 
 
 class AnyInputs(RuleBasedStateMachine):
-    """Random PLC, random station, random times."""
+    """Random PLC, random station, random times. Results are offered for any trigger that ever started."""
 
     def __init__(self) -> None:
         super().__init__()
         self.plc = Driver()
         self.judged_ok: set[int] = set()
-        self.last_shown = 0
 
     @rule(control=st.integers(0, 255), trigger_id=st.integers(0, 4))
     def write(self, control: int, trigger_id: int) -> None:
@@ -224,20 +269,13 @@ class AnyInputs(RuleBasedStateMachine):
         self.plc.silent, self.plc.health = silent, WELL if well else LOST
         self.plc.step(wait_s=wait_s)
 
-    @rule(trigger_id=st.integers(0, 4), verdict=st.sampled_from(list(VerdictCode)[1:]))
-    def offer(self, trigger_id: int, verdict: VerdictCode) -> None:
-        working = self.plc.state.trigger
-        if verdict is VerdictCode.OK and working is not None and working.trigger_id == trigger_id:
-            self.judged_ok.add(self.plc.state.last_id)
-        else:
-            self.judged_ok.discard(trigger_id)
-        self.plc.step(result(trigger_id, verdict))
-
-    @rule()
-    def started_anew(self) -> None:
-        if self.plc.state.phase in (Phase.WIPED, Phase.BUSY):
-            self.judged_ok.discard(self.plc.state.last_id)
-            self.plc.step()
+    @rule(back=st.integers(0, 3), verdict=st.sampled_from(list(VerdictCode)[1:]))
+    def offer(self, back: int, verdict: VerdictCode) -> None:
+        if back < len(self.plc.started):
+            trigger = self.plc.started[-1 - back]
+            if verdict is VerdictCode.OK and self.plc.state.trigger == trigger:
+                self.judged_ok.add(trigger.number)
+            self.plc.step(result(trigger, verdict))
 
     @invariant()
     def ok_only_for_a_judged_frame(self) -> None:
@@ -247,7 +285,10 @@ class AnyInputs(RuleBasedStateMachine):
         assert not (Status.OK in bits and Status.NOK in bits)
         if Status.OK in bits:
             assert Status.RESULT_VALID in bits
-            assert values["RESULT_TRIGGER_ID"] in self.judged_ok
+            shown = self.plc.state.result
+            assert shown is not None
+            assert shown.trigger.number in self.judged_ok
+            assert shown.trigger.number == self.plc.state.accepted, "a newer part was accepted since"
             assert values["RESULT_TRIGGER_ID"] == self.plc.state.last_id
         if Status.READY in bits:
             assert Status.BUSY not in bits

@@ -60,6 +60,8 @@ def test_the_status_window_is_closed_to_writers(line: ModbusServerLine) -> None:
             client.write_registers(100, [0xFFFF] * 10),
             client.write_coil(1606, True),
             client.write_coils(1600, [True] * 16),
+            client.write_coils(0, [True] * 1968),
+            client.write_coils(22 * 16, [True] * 32),
             client.write_registers(20, [0] * 6),
             client.mask_write_register(address=105, and_mask=0, or_mask=1),
             client.readwrite_registers(read_address=100, read_count=2, write_address=105, values=[1]),
@@ -97,7 +99,8 @@ def test_a_result_is_readable_when_publish_returns(line: ModbusServerLine) -> No
     trigger = line.next_trigger(2.0)
     assert trigger is not None
     assert trigger.trigger_id == 77
-    assert line.publish(Result(77, "", VerdictCode.NOK, 70000, 1, 0, (5,) * 21, 8, 0, Flags.SIMULATED))
+    assert line.in_work(trigger)
+    assert line.publish(Result(trigger, VerdictCode.NOK, 70000, 1, 0, (5,) * 21, 8, 0, Flags.SIMULATED))
 
     async def read(client: AsyncModbusTcpClient) -> list[int]:
         return list((await client.read_holding_registers(100, count=76)).registers)

@@ -39,12 +39,14 @@ def test_demo_on_the_shipped_frames(tmp_path: Path) -> None:
     report = json.loads(out.read_text())
     assert [p["truth"] for p in report["parts"]] == [item["truth"] for item in labels()]
     assert (report["escapes"], report["false_rejects"], report["errors"], report["handshakes_complete"]) == (0, 0, 0, count)
-    assert sum(problem is None for _, _, problem in read_records(tmp_path / "records")) == count
+    assert sum(e.problem is None for e in read_records(tmp_path / "records")) == count
     replayed = tmp_path / "replay.json"
     assert run("station", "replay", str(tmp_path / "records"), "--json", str(replayed)).returncode == 0
     again = json.loads(replayed.read_text())
-    for _, record, _ in read_records(tmp_path / "records"):
+    for listed in read_records(tmp_path / "records"):
+        record = listed.record
         assert record is not None
+        assert listed.shown_to_plc
         entry = again[Path(record.frame_file or "").name]
         assert entry["verdict"] == record.verdict
         assert entry["segments"] == [s.nok for s in record.inspection.scores], "replay is not bit for bit"

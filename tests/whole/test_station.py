@@ -101,10 +101,10 @@ def test_every_part_is_judged_recorded_and_answered(station: Station, frames: di
         assert answer.verdict is VerdictCode[item["verdict"]]
         assert answer.handshake_complete
     records = list(read_records(station.folder))
-    assert [(r.inspection_id, r.serial, str(r.verdict)) for _, r, _ in records if r is not None] == [
+    assert [(r.inspection_id, r.serial, str(r.verdict)) for e in records if (r := e.record) is not None] == [
         (answer.inspection_id, f"T{i}", item["verdict"]) for i, (item, answer) in enumerate(zip(items, answers, strict=True))
     ]
-    assert not [problem for _, _, problem in records if problem]
+    assert not [e.problem for e in records if e.problem]
 
 
 def test_a_plc_that_takes_no_simulated_pictures_passes_nothing(station: Station, frames: dict[str, Image]) -> None:
@@ -122,7 +122,7 @@ def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(station: Stati
     reasons = [Reason.INCOMPLETE_FRAME, Reason.WRONG_SIZE, Reason.NO_WELD_FOUND]
     assert [a.reason for a in answers[:3]] == [REASON_CODES[r] for r in reasons]
     assert all(a.handshake_complete for a in answers)
-    assert [r.verdict for _, r, _ in read_records(station.folder) if r is not None] == [Verdict.ERROR] * 3 + [Verdict.OK]
+    assert [r.verdict for e in read_records(station.folder) if (r := e.record) is not None] == [Verdict.ERROR] * 3 + [Verdict.OK]
 
 
 def test_a_record_that_cannot_be_written_is_error(station: Station, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -142,7 +142,7 @@ def test_the_verdict_is_seen_only_after_its_record_is_on_disk(
     publish = ModbusServerLine.publish
 
     def look_first(line: ModbusServerLine, result: object) -> bool:
-        listed.append(sum(problem is None for _, _, problem in read_records(station.folder)))
+        listed.append(sum(e.problem is None for e in read_records(station.folder)))
         return publish(line, result)  # type: ignore[arg-type]
 
     monkeypatch.setattr(ModbusServerLine, "publish", look_first)
