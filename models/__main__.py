@@ -9,6 +9,8 @@ from pathlib import Path
 from models.errors import LearningError
 from station.errors import WeldgateError
 
+SHIPPED = Path(__file__).resolve().parent / "shipped"
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; 0 good, 2 it could not be done."""
@@ -24,6 +26,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         sub.add_argument("--version", default="0.1.0", help="version written into the file (default: %(default)s)")
         sub.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")
         sub.set_defaults(command=command)
+    sub = commands.add_parser("evaluate", help="judge a labelled lot with the shipped networks and the station's own code")
+    sub.add_argument("lot", type=Path, metavar="LOT", help="folder with labels.json and frames/")
+    sub.add_argument("--model", type=Path, default=SHIPPED / "weldgate.onnx", metavar="FILE", help="classifier (default: the shipped one)")
+    sub.add_argument("--ring", type=Path, default=SHIPPED / "ring.onnx", metavar="FILE", help="ring network (default: the shipped one)")
+    sub.set_defaults(command=_evaluate)
     arguments = parser.parse_args(argv)
     try:
         return int(arguments.command(arguments))
@@ -32,6 +39,24 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     except KeyboardInterrupt:
         return 130
+
+
+def _evaluate(arguments: argparse.Namespace) -> int:
+    from rich.progress import Progress
+
+    from models.data import read_labels
+    from models.evaluate import evaluate
+    from station.classify.onnx import Classifier, RingNetwork
+    from station.inspection import Inspector
+    from station.settings import ModelSettings, QualitySettings, WeldSettings
+
+    inspector = Inspector(RingNetwork(arguments.ring), Classifier(arguments.model), WeldSettings(), QualitySettings(), ModelSettings())
+    with Progress(disable=not sys.stderr.isatty()) as progress:
+        task = progress.add_task("judging", total=len(read_labels(arguments.lot)))
+        outcome = evaluate(arguments.lot, inspector, lambda: progress.advance(task))
+    for line in outcome.lines():
+        _say(line)
+    return 0
 
 
 def _say(line: str) -> None:
@@ -49,11 +74,14 @@ def _train(arguments: argparse.Namespace) -> int:
 def _train_ring(arguments: argparse.Namespace) -> int:
     from models.data import data_hash
     from models.export import export_ring
-    from models.ring import RingPlan, train_ring
+    from models.ring import RingPlan, ring_card, train_ring
 
-    network = train_ring(arguments.lot, RingPlan(seed=arguments.seed), _say)
+    plan = RingPlan(seed=arguments.seed)
+    network, error_px = train_ring(arguments.lot, plan, _say)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    export_ring(network, arguments.out / "ring.onnx", arguments.version, data_hash(arguments.lot))
+    digest = data_hash(arguments.lot)
+    export_ring(network, arguments.out / "ring.onnx", arguments.version, digest)
+    (arguments.out / "RING.md").write_text(ring_card(arguments.version, digest, plan, error_px))
     return 0
 
 

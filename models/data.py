@@ -72,13 +72,13 @@ def read_lot(folder: Path, jitters: int, rng: np.random.Generator, progress: Cal
 
     Raises LearningError listing what is wrong, before any strip is cut.
     """
-    labels = _labels(folder)
+    labels = read_labels(folder)
     strips = []
     for item in labels:
         image = cv2.imread(str(folder / "frames" / item["frame"]), cv2.IMREAD_GRAYSCALE)
         if image is None:
             raise LearningError(f"{folder / 'frames' / item['frame']}: not a readable image")
-        defects = tuple(_defect(d) for d in item["defects"])
+        defects = defects_of(item)
         for index in range(1 + jitters):
             dx, dy, dr = rng.uniform(-4, 4, 3) if index else (0.0, 0.0, 0.0)
             ring = Ring(item["center"][0] + dx, item["center"][1] + dy, item["radius"] + dr, 1.0)
@@ -90,7 +90,7 @@ def read_lot(folder: Path, jitters: int, rng: np.random.Generator, progress: Cal
 def read_images(folder: Path) -> list[tuple[NDArray[np.uint8], float, float, float]]:
     """Images of a lot with the true circle: (image, centre x, centre y, radius), px. Raises LearningError."""
     found = []
-    for item in _labels(folder):
+    for item in read_labels(folder):
         image = cv2.imread(str(folder / "frames" / str(item["frame"])), cv2.IMREAD_GRAYSCALE)
         if image is None:
             raise LearningError(f"{folder / 'frames' / str(item['frame'])}: not a readable image")
@@ -113,7 +113,8 @@ def split_by_part(strips: list[LabelledStrip], share: float) -> tuple[list[Label
     return [s for s in strips if s.part not in held], [s for s in strips if s.part in held]
 
 
-def _labels(folder: Path) -> list[dict[str, Any]]:
+def read_labels(folder: Path) -> list[dict[str, Any]]:
+    """Entries of `labels.json`. Raises LearningError if any is wrong or its image is missing."""
     path = folder / "labels.json"
     try:
         labels = json.loads(path.read_text())["frames"]
@@ -128,6 +129,11 @@ def _labels(folder: Path) -> list[dict[str, Any]]:
     if unknown:
         raise LearningError(f"{path}: unknown kinds {sorted(unknown)}; known: hole_small, hole_long, missing_weld")
     return list(labels)
+
+
+def defects_of(item: dict[str, Any]) -> tuple[Defect, ...]:
+    """Defects of one labelled part."""
+    return tuple(_defect(d) for d in item["defects"])
 
 
 def _defect(item: dict[str, Any]) -> Defect:

@@ -12,7 +12,6 @@ from datetime import UTC, datetime
 
 from station.archive import Archive, Pending
 from station.camera.port import Camera
-from station.classify.decision import segment_kind
 from station.domain import SEGMENTS, Frame, Inspection, Origin, Reason, Timing, Verdict
 from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError
 from station.events import Counts, Event, PartEvent, Preview, StatusEvent
@@ -211,7 +210,7 @@ class Cycle:
             return Inspection.error(Reason.INTERNAL, timing=timing)
 
     def _seg_nok(self, inspection: Inspection) -> tuple[bool, ...]:
-        return tuple(segment_kind(s, self._inspector.thresholds) is not None for s in inspection.scores)
+        return tuple(self._inspector.is_nok(s) for s in inspection.scores)
 
     def _result(self, trigger: Trigger, record: Record) -> Result:
         inspection = record.inspection

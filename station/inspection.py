@@ -2,9 +2,9 @@
 
 from time import perf_counter
 
-from station.classify.decision import Thresholds, findings
+from station.classify.decision import Thresholds, findings, segment_kind
 from station.classify.onnx import Classifier, RingNetwork
-from station.domain import Image, Inspection, Reason, Ring, Timing, Verdict
+from station.domain import Image, Inspection, Reason, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
 from station.settings import ModelSettings, QualitySettings, WeldSettings
 from station.vision.locate import Expected, locate
@@ -33,6 +33,10 @@ class Inspector:
     def locate(self, image: Image) -> Ring:
         """Ring of the weld in `image` (H, W) uint8. Raises LocateError, ModelError."""
         return locate(image, self._expected, self._ring_network)
+
+    def is_nok(self, scores: SegmentScores) -> bool:
+        """Whether a segment with these scores is refused."""
+        return segment_kind(scores, self.thresholds) is not None
 
     def inspect(self, image: Image, grab_ms: float | None = None) -> Inspection:
         """Judge `image` (H, W) uint8. Every way that does not end with 21 judged segments ends in ERROR."""
