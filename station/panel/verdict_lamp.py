@@ -36,7 +36,7 @@ class VerdictLamp(QWidget):
         font = painter.font()
         font.setBold(True)
         for text, top, share, size in ((self._lamp.symbol, 0.04, 0.42, 0.36), (self._lamp.word, 0.46, 0.28, 0.24)):
-            font.setPixelSize(max(12, int(min(height * size, width * 1.5 / max(4, len(text))))))
+            font.setPixelSize(max(12, int(min(height * size, width * 1.15 / max(4, len(text))))))
             painter.setFont(font)
             painter.drawText(QRectF(0, height * top, width, height * share), Qt.AlignmentFlag.AlignCenter, text)
         font.setBold(False)
