@@ -22,7 +22,7 @@ def plate_texture(part: Part) -> Texture:
     n = PLATE_TEXELS
     mm = n / PLATE_MM
     stripes = sum(weight * _field(rng, (96, n), (8.0, grain * mm)) for weight, grain in ((0.5, 0.5), (0.35, 0.12), (0.4, 0.03)))
-    image = 0.72 + float(rng.uniform(0.02, 0.10)) * np.asarray(stripes) + 0.02 * _field(rng, (384, 384), (12.0, 12.0))
+    image = part.partner_reflectance + float(rng.uniform(0.02, 0.10)) * np.asarray(stripes) + 0.02 * _field(rng, (384, 384), (12.0, 12.0))
 
     y, x = ((np.indices((n, n), np.float32) + 0.5) / mm - PLATE_MM / 2).astype(np.float32)
     away = np.maximum(np.abs(np.hypot(x, y) - part.radius_mm) - part.half_width_mm, 0)
@@ -76,7 +76,20 @@ def bead_texture(part: Part) -> Texture:
     rng = np.random.default_rng([part.seed, 6])
     shape = (64, 2048)
     t = np.linspace(-1, 1, shape[0])[:, None]
-    image = np.clip(0.86 + 0.05 * noise(rng, shape, (12, 30)), 0, 1)
+    image = np.clip(part.bead_reflectance + 0.05 * noise(rng, shape, (12, 30)), 0, 1)
     patches = np.clip(noise(rng, shape, (20, 60)) + rng.uniform(-2.5, 0.2), 0, 1)
     border = np.abs(t) ** 6 * np.clip(0.5 + 0.5 * noise(rng, shape, (64, 80)), 0, 1) * rng.uniform(0, 0.8)
-    return np.asarray(image * (1 - 0.6 * patches) * (1 - border), np.float32)
+    sooty = np.asarray(image * (1 - 0.6 * patches) * (1 - border), np.float32)
+    _bead_scratches(part, sooty)
+    return sooty
+
+
+def _bead_scratches(part: Part, image: Texture) -> None:
+    rng = np.random.default_rng([part.seed, 10])
+    rows, columns = image.shape
+    for _ in range(part.bead_scratches):
+        start = rng.uniform((0, 0), (columns, rows))
+        end = start + rng.uniform((-60, -rows), (60, rows))
+        shade = float(np.clip(image.mean() * rng.uniform(0.55, 1.2), 0, 1))
+        points = np.round(np.stack([start, end]) * 16).astype(np.int32)
+        cv2.polylines(image, [points], False, shade, 1, cv2.LINE_AA, 4)

@@ -69,6 +69,19 @@ class Part:
     """Where the weld starts and, after the overlap, ends."""
     direction: int
     """+1: welded clockwise as seen in the image, -1: the other way."""
+    sparsity: float
+    chevron: float
+    undercut_mm: float
+    bead_scratches: int
+    bead_reflectance: float
+    partner_reflectance: float
+    alpha_weld: float
+    alpha_partner: float
+    floor_reflectance: float
+    light_scale: float
+    light_lean: float
+    light_heading_deg: float
+    """Side on which the light is brighter, as angles in the image."""
     exposure: float
     defocus_px: float
     read_noise_dn: float
@@ -86,9 +99,13 @@ class Part:
 def draw_part(seed: int, truth: Truth, recipe: Recipe) -> Part:
     """Draw the part number `seed` with the wished truth from `recipe`. Same arguments, same part."""
     rng = np.random.default_rng([seed, 1])
+    look = np.random.default_rng([seed, 8])
 
     def of(bounds: Range) -> float:
         return float(rng.uniform(*bounds))
+
+    def seen(bounds: Range) -> float:
+        return float(look.uniform(*bounds))
 
     half_width_mm = of(recipe.half_width_mm)
     radius_mm = of(recipe.radius_mm)
@@ -115,6 +132,18 @@ def draw_part(seed: int, truth: Truth, recipe: Recipe) -> Part:
         gap_mm=of(recipe.gap_mm),
         start_deg=of((0.0, 360.0)),
         direction=1 if rng.random() < 0.5 else -1,
+        sparsity=seen(recipe.sparsity),
+        chevron=seen(recipe.chevron),
+        undercut_mm=seen(recipe.undercut_mm),
+        bead_scratches=int(look.integers(recipe.bead_scratches[0], recipe.bead_scratches[1] + 1)),
+        bead_reflectance=seen(recipe.bead_reflectance),
+        partner_reflectance=seen(recipe.partner_reflectance),
+        alpha_weld=seen(recipe.alpha_weld),
+        alpha_partner=seen(recipe.alpha_partner),
+        floor_reflectance=seen(recipe.floor_reflectance),
+        light_scale=seen(recipe.light_scale),
+        light_lean=seen(recipe.light_lean),
+        light_heading_deg=seen((0.0, 360.0)),
         exposure=float(np.exp(rng.uniform(*np.log(recipe.exposure)))),
         defocus_px=of(recipe.defocus_px),
         read_noise_dn=of(recipe.read_noise_dn),

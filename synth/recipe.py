@@ -41,6 +41,25 @@ class Recipe:
     """Arc of a missing weld."""
     missing_all_share: float = 0.12
     """Share of the parts with a missing weld that have no weld at all."""
+    sparsity: Range = (0.0, 0.0)
+    """How far the ripples are gathered into few deep ones with calm weld between, 0 to 1."""
+    chevron: Range = (0.0, 0.0)
+    """Form of the ripples, from a round crescent (0) to a sharp arrow (1)."""
+    undercut_mm: Range = (0.0, 0.0)
+    """Depth of the groove along the bead's borders."""
+    bead_scratches: tuple[int, int] = (0, 0)
+    """Number of scratches across the bead."""
+    bead_reflectance: Range = (0.86, 0.86)
+    partner_reflectance: Range = (0.72, 0.72)
+    alpha_weld: Range = (0.18, 0.18)
+    """Roughness of the weld (paper, section 4.1)."""
+    alpha_partner: Range = (0.20, 0.20)
+    floor_reflectance: Range = (0.03, 0.03)
+    """Of what lies below holes and joint."""
+    light_scale: Range = (1.0, 1.0)
+    """Size of the light's rings against the nominal ones."""
+    light_lean: Range = (0.0, 0.0)
+    """How much brighter the light is on one side, 0 to 1."""
     exposure: Range = (0.6, 1.5)
     """Exposure relative to the nominal one."""
     defocus_px: Range = (0.3, 1.3)
@@ -49,5 +68,29 @@ class Recipe:
     """Read noise in grey levels."""
 
 
-TRAINING = Recipe(holes=(4, 9), hole_length_mm=(0.08, 2.4), missing_deg=(10.0, 150.0))
-"""Many defects per part: more defective crops for each rendering."""
+TRAINING = Recipe(
+    half_width_mm=(0.36, 0.57),
+    crown_mm=(0.01, 0.08),
+    ripple_pitch_mm=(0.08, 0.38),
+    ripple_slope=(0.015, 0.36),
+    rough_slope=(0.01, 0.11),
+    wobble_mm=(0.0, 0.035),
+    gap_mm=(0.05, 0.20),
+    holes=(4, 9),
+    hole_length_mm=(0.08, 2.4),
+    missing_deg=(10.0, 150.0),
+    sparsity=(0.0, 0.95),
+    chevron=(0.0, 1.0),
+    undercut_mm=(0.0, 0.03),
+    bead_scratches=(0, 4),
+    bead_reflectance=(0.55, 0.95),
+    partner_reflectance=(0.50, 0.90),
+    alpha_weld=(0.10, 0.28),
+    alpha_partner=(0.12, 0.30),
+    floor_reflectance=(0.01, 0.08),
+    light_scale=(0.7, 1.3),
+    light_lean=(0.0, 0.7),
+    exposure=(0.5, 2.2),
+    defocus_px=(0.3, 1.9),
+)
+"""Many defects per part, and surfaces and lights wider than any one line's: more to learn from each rendering."""

@@ -14,9 +14,6 @@ from synth.part import Part
 Window = tuple[int, int, int, int]
 """x, y, width, height in pixels of the whole frame."""
 
-ALPHA_WELD = 0.18
-ALPHA_PARTNER = 0.20
-
 
 def render(part: Part, optics: Optics, window: Window | None = None, samples: int = 16) -> NDArray[np.float32]:
     """Linear radiance (H, W) float32 of the window (default: the whole frame), row 0 on top."""
@@ -24,10 +21,10 @@ def render(part: Part, optics: Optics, window: Window | None = None, samples: in
         mi.set_variant("llvm_ad_mono")
     x, y, width, height = window or (0, 0, optics.width_px, optics.height_px)
     scene: dict[str, Any] = {"type": "scene", "integrator": {"type": "direct", "emitter_samples": 2, "bsdf_samples": 0}}
-    scene |= _lights(optics)
-    plate = _metal(plate_texture(part), ALPHA_PARTNER)
-    bead = _metal(bead_texture(part), ALPHA_WELD)
-    floor = mi.load_dict({"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.03}})
+    scene |= _lights(part, optics)
+    plate = _metal(plate_texture(part), part.alpha_partner)
+    bead = _metal(bead_texture(part), part.alpha_weld)
+    floor = mi.load_dict({"type": "diffuse", "reflectance": {"type": "uniform", "value": part.floor_reflectance}})
     for name, mesh in part_meshes(part).items():
         scene[name] = _shape(name, mesh, {"bead": bead, "floor": floor}.get(name, plate))
     sensor = mi.load_dict(
@@ -57,17 +54,21 @@ def render(part: Part, optics: Optics, window: Window | None = None, samples: in
     return np.asarray(image, dtype=np.float32).reshape(height, width)
 
 
-def _lights(optics: Optics) -> dict[str, Any]:
-    power = 2.0e5 / len(optics.light_positions_mm())
+def _lights(part: Part, optics: Optics) -> dict[str, Any]:
+    positions = optics.light_positions_mm()
+    positions[:, :2] *= part.light_scale
+    heading = np.deg2rad(part.light_heading_deg)
+    side = (positions[:, 0] * np.cos(heading) - positions[:, 1] * np.sin(heading)) / np.abs(positions[:, :2]).max()
+    power = 2.0e5 / len(positions) * (1.0 + part.light_lean * side)
     return {
         f"light_{i:02d}": {
             "type": "spot",
             "to_world": mi.ScalarTransform4f().look_at(origin=at.tolist(), target=[at[0], at[1], 0.0], up=[0, 1, 0]),
-            "intensity": {"type": "uniform", "value": power},
+            "intensity": {"type": "uniform", "value": float(power[i])},
             "cutoff_angle": optics.light_opening_deg,
             "beam_width": 2.0,
         }
-        for i, at in enumerate(optics.light_positions_mm())
+        for i, at in enumerate(positions)
     }
 
 

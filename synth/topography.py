@@ -94,12 +94,17 @@ def relief(part: Part, theta_rad: Array, t: Array) -> Array:
     at_end = (e_mm < 0) | in_pool
     s_mm = np.where(at_end, e_mm + length_mm, e_mm)
 
-    ahead_mm = part.crescent_mm * np.exp(-0.5 * (t[None, :] / 0.55) ** 2)
+    arrow = 1.0 - np.abs(t[None, :])
+    ahead_mm = part.crescent_mm * ((1.0 - part.chevron) * np.exp(-0.5 * (t[None, :] / 0.55) ** 2) + part.chevron * arrow)
     warp_mm = part.ripple_pitch_mm * (
         0.55 * noise(rng, shape, (0.8 / cell_mm[0], 0.5 / cell_mm[1])) + 0.10 * noise(rng, shape, (0.15 / cell_mm[0], 0.1 / cell_mm[1]))
     )
     phase = 2 * np.pi * (s_mm - ahead_mm + warp_mm) / part.ripple_pitch_mm
     strength = np.clip(1.0 + 0.45 * noise(rng, shape, (0.7 / cell_mm[0], 0.4 / cell_mm[1])), 0.1, 2.2)
+    extra = np.random.default_rng([part.seed, 9])
+    if part.sparsity > 0:
+        few = noise(extra, shape, (1.6 * part.ripple_pitch_mm / cell_mm[0], 0.6 / cell_mm[1]))
+        strength *= 1.0 - part.sparsity + part.sparsity * 2.5 / (1.0 + np.exp(-(few - 1.0) / 0.25))
     ripple = np.sin(phase) + 0.4 * np.sin(2 * phase + 0.9) + 0.15 * np.sin(3 * phase + 1.7)
     amplitude_mm = part.ripple_slope * part.ripple_pitch_mm / (2 * np.pi)
     z_mm = amplitude_mm * strength * ripple
@@ -110,6 +115,9 @@ def relief(part: Part, theta_rad: Array, t: Array) -> Array:
         z_mm += share * part.rough_slope / slope * field
 
     z_mm *= np.exp(-0.5 * (np.abs(t[None, :]) / 0.8) ** 4)
+    if part.undercut_mm > 0:
+        along = np.clip(0.3 + noise(extra, shape, (0.8 / cell_mm[0], shape[1])), 0.0, 2.0)
+        z_mm -= part.undercut_mm * along * np.exp(-0.5 * ((np.abs(t[None, :]) - 0.92) / 0.05) ** 2)
     z_mm += part.crown_mm * (1.0 - np.abs(t[None, :]) ** 2.5)
 
     lip = np.exp(-0.5 * ((to_end_mm - part.half_width_mm * 0.95) / 0.03) ** 2) * (e_mm > -0.1)
