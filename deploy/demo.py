@@ -12,6 +12,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
@@ -82,8 +83,9 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
             time.sleep(1.0)
             if panel.poll() is not None:
                 console.print(f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]")
-        parts = _parts(arguments.parts, folder / "fresh", renderer, console)
-        judged = asyncio.run(_drive(plc_port, feed, parts, engine, folder / "engine.log", pace_s, console))
+        stopping = threading.Event()
+        parts = _parts(arguments.parts, folder / "fresh", renderer, console, stopping)
+        judged = asyncio.run(_drive(plc_port, feed, parts, stopping, engine, folder / "engine.log", pace_s, console))
     summarise(judged, records, console)
     if arguments.json is not None:
         write_json(arguments.json, judged, records)
@@ -151,7 +153,9 @@ def _renderer(out: Path, count: int, seed: int) -> "Iterator[subprocess.Popen[by
         yield process
 
 
-def _parts(count: int, fresh: Path, renderer: "subprocess.Popen[bytes] | None", console: Console) -> Iterator[DemoPart]:
+def _parts(
+    count: int, fresh: Path, renderer: "subprocess.Popen[bytes] | None", console: Console, stopping: threading.Event
+) -> Iterator[DemoPart]:
     """Shipped frames first, then fresh ones as they come."""
     shipped = shipped_parts()[:count]
     yield from shipped
@@ -162,7 +166,7 @@ def _parts(count: int, fresh: Path, renderer: "subprocess.Popen[bytes] | None", 
         with console.status(f"rendering part {len(seen) + 1} of {wanted}") as status:
             while not (ready := sorted(p for p in (fresh / "frames").glob("part_*.json") if p.stem not in seen)):
                 dead = renderer is None or renderer.poll() is not None
-                late = time.monotonic() - waited_s > RENDER_PATIENCE_S
+                late = stopping.is_set() or time.monotonic() - waited_s > RENDER_PATIENCE_S
                 if late or (dead and not any(p.stem not in seen for p in (fresh / "frames").glob("part_*.json"))):
                     raise SynthError("the renderer stopped; run 'weldgate-synth part --out DIR --count 1' to see why")
                 status.update(f"rendering part {len(seen) + 1} of {wanted}  {_bar(len(seen), wanted)}")
@@ -178,7 +182,14 @@ def _bar(done: int, of: int) -> str:
 
 
 async def _drive(
-    port: int, feed: Feed, parts: Iterator[DemoPart], engine: "subprocess.Popen[bytes]", log: Path, pace_s: float, console: Console
+    port: int,
+    feed: Feed,
+    parts: Iterator[DemoPart],
+    stopping: threading.Event,
+    engine: "subprocess.Popen[bytes]",
+    log: Path,
+    pace_s: float,
+    console: Console,
 ) -> list[Judged]:
     line = SimulatedLine("127.0.0.1", port, accept_simulated=True)
     judged: list[Judged] = []
@@ -196,8 +207,9 @@ async def _drive(
                 raise WeldgateError(f"the engine stopped: {_last_line(log)}")
             judged.append(Judged(part, await line.inspect(part.name)))
             tell(judged, console)
-            await asyncio.sleep(pace_s)
+            await line.meanwhile(asyncio.sleep(pace_s))
     finally:
+        stopping.set()
         line.close()
     return judged
 
