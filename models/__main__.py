@@ -21,7 +21,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         ("train-ring", _train_ring, "train the ring network and export it"),
     ):
         sub = commands.add_parser(name, help=text, description=text)
-        sub.add_argument("lot", type=Path, metavar="LOT", help="folder made by weldgate-synth part")
+        sub.add_argument("lots", type=Path, nargs="+", metavar="LOT", help="folders made by weldgate-synth part")
         sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the ONNX file goes")
         sub.add_argument("--version", default="0.1.0", help="version written into the file (default: %(default)s)")
         sub.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")
@@ -66,7 +66,7 @@ def _say(line: str) -> None:
 def _train(arguments: argparse.Namespace) -> int:
     from models.train import Plan, train
 
-    card = train(arguments.lot, arguments.out, arguments.version, Plan(seed=arguments.seed), _say)
+    card = train(arguments.lots, arguments.out, arguments.version, Plan(seed=arguments.seed), _say)
     print(json.dumps(card["held_out"]))
     return 0
 
@@ -77,9 +77,9 @@ def _train_ring(arguments: argparse.Namespace) -> int:
     from models.ring import RingPlan, ring_card, train_ring
 
     plan = RingPlan(seed=arguments.seed)
-    network, error_px = train_ring(arguments.lot, plan, _say)
+    network, error_px = train_ring(arguments.lots, plan, _say)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    digest = data_hash(arguments.lot)
+    digest = data_hash(arguments.lots)
     export_ring(network, arguments.out / "ring.onnx", arguments.version, digest)
     (arguments.out / "RING.md").write_text(ring_card(arguments.version, digest, plan, error_px))
     return 0

@@ -98,18 +98,21 @@ def read_images(folder: Path) -> list[tuple[NDArray[np.uint8], float, float, flo
     return found
 
 
-def data_hash(folder: Path) -> str:
-    """SHA-256 over the labels and the images of a lot, in the order of their names."""
-    digest = hashlib.sha256((folder / "labels.json").read_bytes())
-    for path in sorted((folder / "frames").glob("*.png")):
-        digest.update(path.read_bytes())
+def data_hash(folders: list[Path]) -> str:
+    """SHA-256 over the labels and the images of lots, images in the order of their names."""
+    digest = hashlib.sha256()
+    for folder in folders:
+        digest.update((folder / "labels.json").read_bytes())
+        for path in sorted((folder / "frames").glob("*.png")):
+            digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
 def split_by_part(strips: list[LabelledStrip], share: float) -> tuple[list[LabelledStrip], list[LabelledStrip]]:
-    """Training and validation strips: all strips of one part on one side, the last `share` of the parts held out."""
+    """Training and validation strips: all strips of one part on one side, every n-th of the parts held out."""
     parts = sorted({s.part for s in strips})
-    held = set(parts[len(parts) - max(1, round(len(parts) * share)) :])
+    every = max(1, round(1 / share))
+    held = set(parts[every - 1 :: every])
     return [s for s in strips if s.part not in held], [s for s in strips if s.part in held]
 
 

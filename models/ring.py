@@ -75,11 +75,11 @@ class RingPlan:
     seed: int = 0
 
 
-def train_ring(lot: Path, plan: RingPlan, report: Callable[[str], None]) -> tuple[RingNet, float]:
+def train_ring(lots: list[Path], plan: RingPlan, report: Callable[[str], None]) -> tuple[RingNet, float]:
     """Train on all but the last tenth of the parts; the network and its median centre error on those, px."""
     rng = np.random.default_rng(plan.seed)
     torch.manual_seed(plan.seed)
-    parts = read_images(lot)
+    parts = [part for lot in lots for part in read_images(lot)]
     held = max(1, len(parts) // 10)
     training, kept = parts[:-held], parts[-held:]
     network = RingNet()

@@ -33,15 +33,15 @@ class Plan:
     seed: int = 0
 
 
-def train(lot: Path, out: Path, version: str, plan: Plan, report: Report) -> dict[str, object]:
-    """Train on `lot`, write `out`/weldgate.onnx and `out`/CARD.md; returns the figures of the card."""
+def train(lots: list[Path], out: Path, version: str, plan: Plan, report: Report) -> dict[str, object]:
+    """Train on `lots`, write `out`/weldgate.onnx and `out`/CARD.md; returns the figures of the card."""
     rng = np.random.default_rng(plan.seed)
     torch.manual_seed(plan.seed)
-    strips = read_lot(lot, plan.jitters, rng)
+    strips = [strip for lot in lots for strip in read_lot(lot, plan.jitters, rng)]
     training, held = split_by_part(strips, plan.held_out)
     held = held[:: 1 + plan.jitters]
     if len({s.part for s in training}) < 2 or not held:
-        raise LearningError(f"{lot}: too few parts to train and to hold some out")
+        raise LearningError(f"{', '.join(map(str, lots))}: too few parts to train and to hold some out")
     pools = _pools(training)
     network = WeldNet()
     optimizer = torch.optim.AdamW(network.parameters(), lr=plan.learning_rate, weight_decay=0.01)
@@ -64,7 +64,7 @@ def train(lot: Path, out: Path, version: str, plan: Plan, report: Report) -> dic
         report(f"epoch {epoch + 1}/{plan.epochs}: loss {total * plan.batch / plan.crops_per_epoch:.3f}, held out F2 {figures['f2']:.3f}")
     scores = _predict(network, crops)
     hole, gone = _thresholds(scores, labels)
-    digest = data_hash(lot)
+    digest = data_hash(lots)
     out.mkdir(parents=True, exist_ok=True)
     export(network, out / "weldgate.onnx", version, digest, hole, gone)
     card: dict[str, object] = {

@@ -10,7 +10,8 @@ from synth.part import Truth
 
 SHARES = {
     "line": {Truth.OK: 0.4, Truth.HOLE: 0.3, Truth.MISSING_WELD: 0.3},
-    "training": {Truth.OK: 0.25, Truth.HOLE: 0.45, Truth.MISSING_WELD: 0.3},
+    "dense": {Truth.OK: 0.25, Truth.HOLE: 0.45, Truth.MISSING_WELD: 0.3},
+    "wide": {Truth.OK: 0.25, Truth.HOLE: 0.45, Truth.MISSING_WELD: 0.3},
 }
 
 
@@ -25,7 +26,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     part.add_argument("--count", type=int, default=1, help="number of parts (default: %(default)s)")
     part.add_argument("--seed", type=int, default=0, help="seed of the lot (default: %(default)s)")
     part.add_argument(
-        "--mix", choices=sorted(SHARES), default="line", help="line: one to three defects a part; training: many (default: %(default)s)"
+        "--mix",
+        choices=sorted(SHARES),
+        default="line",
+        help="line: few defects a part; dense: many; wide: many, on all kinds of surfaces (default: %(default)s)",
     )
     part.add_argument("--ring-only", action="store_true", help="only the window round the ring: faster, enough for training")
     part.set_defaults(command=_part)
@@ -47,9 +51,9 @@ def _part(arguments: argparse.Namespace) -> int:
     from rich.progress import Progress
 
     from synth.dataset import write_lot
-    from synth.recipe import TRAINING, Recipe
+    from synth.recipe import DENSE, WIDE, Recipe
 
-    recipe = TRAINING if arguments.mix == "training" else Recipe()
+    recipe = {"line": Recipe(), "dense": DENSE, "wide": WIDE}[arguments.mix]
     with Progress(disable=not sys.stderr.isatty()) as progress:
         task = progress.add_task("rendering", total=arguments.count)
         write_lot(

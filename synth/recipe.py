@@ -68,7 +68,10 @@ class Recipe:
     """Read noise in grey levels."""
 
 
-TRAINING = Recipe(
+DENSE = Recipe(holes=(4, 9), hole_length_mm=(0.08, 2.4), missing_deg=(10.0, 150.0))
+"""The line's surfaces with many defects per part: more defective crops for each rendering."""
+
+WIDE = Recipe(
     half_width_mm=(0.36, 0.57),
     crown_mm=(0.01, 0.08),
     ripple_pitch_mm=(0.08, 0.38),
@@ -93,4 +96,4 @@ TRAINING = Recipe(
     exposure=(0.5, 2.2),
     defocus_px=(0.3, 1.9),
 )
-"""Many defects per part, and surfaces and lights wider than any one line's: more to learn from each rendering."""
+"""As dense, with surfaces and lights wider than any one line's: a network that saw one look only is lost on the next."""
