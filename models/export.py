@@ -39,8 +39,7 @@ def export_ring(network: RingNet, path: Path, version: str, data_hash: str) -> N
     bands = torch.from_numpy(np.random.default_rng(0).integers(0, 256, (1, 1, ROWS, COLUMNS), dtype=np.uint8))
     metadata = {"weldgate.data_hash": data_hash, "weldgate.version": version}
     part = _write(network.eval(), bands, path, "bands", "sectors", metadata)
-    offset_px, presence = RingNetwork(part)(bands.numpy()[0, 0])
-    _keep(part, path, _answer(network, bands)[0], np.stack([offset_px, presence]))
+    _keep(part, path, _answer(network, bands), RingNetwork(part).sectors(bands.numpy()[:, 0]))
 
 
 def _write(network: torch.nn.Module, example: torch.Tensor, path: Path, source: str, target: str, metadata: dict[str, str]) -> Path:

@@ -64,11 +64,20 @@ class RingNetwork:
         self(np.zeros((ROWS, COLUMNS), np.uint8))
 
     def __call__(self, band: Image) -> tuple[Array, Array]:
-        """Offset in px (84,), outwards positive, and presence 0..1 (84,) of each sector of a band (192, 672) uint8."""
-        answer = _run(self._session, "sectors", {"bands": band[None, None]})
-        if answer.shape != (1, 2, SECTORS) or not np.isfinite(answer).all():
+        """Offset in px (84,), outwards positive, and presence 0..1 (84,) of each sector of a band (192, 672) uint8.
+
+        The mean over the band's four mirror images, for a mirrored weld is a weld. Raises ModelError.
+        """
+        a, b, c, d = self.sectors(np.stack([band, band[:, ::-1], band[::-1], band[::-1, ::-1]]))
+        offset = (a[0] + b[0, ::-1] - c[0] - d[0, ::-1]) / 4
+        return offset, (a[1] + b[1, ::-1] + c[1] + d[1, ::-1]) / 4
+
+    def sectors(self, bands: Image) -> Array:
+        """What the network itself says of bands (K, 192, 672) uint8: offsets and presences (K, 2, 84)."""
+        answer = _run(self._session, "sectors", {"bands": bands[:, None]})
+        if answer.shape != (len(bands), 2, SECTORS) or not np.isfinite(answer).all():
             raise ModelError(f"the ring network gave no offsets (shape {answer.shape})")
-        return answer[0, 0], answer[0, 1]
+        return answer
 
 
 def _open(path: Path, threads: int) -> tuple[bytes, ort.InferenceSession]:
