@@ -25,11 +25,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", stream=sys.stderr)
     try:
         return int(arguments.command(arguments))
+    except (KeyboardInterrupt, BrokenPipeError):
+        return 130
     except (WeldgateError, OSError) as error:
         print(f"weldgate: {error}", file=sys.stderr)
         return 2
-    except (KeyboardInterrupt, BrokenPipeError):
-        return 130
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -12,10 +12,11 @@ from datetime import UTC, datetime
 
 from station.archive import Archive, Pending
 from station.camera.port import Camera
-from station.domain import SEGMENTS, Frame, Inspection, Origin, Reason, Timing, Verdict
+from station.domain import Frame, Inspection, Origin, Reason, Timing, Verdict
 from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError
 from station.events import Counts, Event, PartEvent, Preview, StatusEvent
 from station.inspection import Inspector
+from station.plc.handshake import ALL_SEGMENTS
 from station.plc.port import Health, Line, Result, Trigger
 from station.plc.registers import REASON_CODES, Flags, Offline, Status, VerdictCode
 from station.preview import make_preview
@@ -224,7 +225,7 @@ class Cycle:
             error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
             seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
             seg_nok_mask=sum(1 << i for i, bad in enumerate(nok) if bad),
-            seg_invalid_mask=0 if inspection.scores else (1 << SEGMENTS) - 1,
+            seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
             flags=Flags.SIMULATED if self._origin is Origin.SIMULATED else Flags(0),
         )
 

@@ -1,6 +1,6 @@
 """Networks through onnxruntime; the only file that imports it: 21 crops to class probabilities, a band to ring offsets.
 
-The file carries its own contract in its metadata; a file without it is refused.
+The classifier's file carries its contract in its metadata and is refused without it; the ring network's is known by its input.
 """
 
 import hashlib
@@ -28,7 +28,7 @@ class ModelCard:
 
     version: str
     data_hash: str
-    """SHA-256 over the training labels."""
+    """SHA-256 over the training labels and images."""
     hole_threshold: float
     missing_threshold: float
     file_hash: str
@@ -115,7 +115,7 @@ def _card(path: Path, blob: bytes, session: ort.InferenceSession) -> ModelCard:
     metadata = session.get_modelmeta().custom_metadata_map
     missing = [key for key in METADATA_KEYS if key not in metadata]
     if missing:
-        raise ModelError(f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; export it with weldgate-models export")
+        raise ModelError(f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; make one with weldgate-models train")
     _check_input(path, session, "crops", [1, SEGMENT_PX, SEGMENT_PX])
     if "probabilities" not in [o.name for o in session.get_outputs()]:
         raise ModelError(f"{path}: has no output 'probabilities'")
@@ -124,7 +124,7 @@ def _card(path: Path, blob: bytes, session: ort.InferenceSession) -> ModelCard:
         thresholds = json.loads(metadata["weldgate.thresholds"])
         hole, gone = float(thresholds["hole"]), float(thresholds["missing_weld"])
     except (ValueError, KeyError, TypeError):
-        raise ModelError(f"{path}: metadata cannot be read; export it again with weldgate-models export") from None
+        raise ModelError(f"{path}: metadata cannot be read; make it again with weldgate-models train") from None
     if classes != CLASSES:
         raise ModelError(f"{path}: classes are {classes}, needed {CLASSES}")
     if not (0 < hole < 1 and 0 < gone < 1):
