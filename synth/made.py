@@ -1,0 +1,101 @@
+"""A made surface measurement of a weld, since no real one is to be had: not by the method that it feeds.
+
+Each laser pulse leaves a lens of melt that freezes over the lenses before it, as in a pulsed seam weld; what is seen of each is
+what the later ones leave uncovered. Partner step, tilt, noise and lost points are those of a white-light interferometer.
+"""
+
+import hashlib
+import zipfile
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+STEP_UM = 3.0
+SIZE = 2000
+HEIGHT_STEP_UM = 0.05
+NOTE = (
+    "MADE, NOT MEASURED: an artificial surface (overlapping frozen melt pools, partner step, noise, lost points) "
+    "in place of a white-light interferometer measurement of a real weld"
+)
+
+Array = NDArray[np.float64]
+
+
+def make_weld(seed: int = 1) -> tuple[Array, NDArray[np.bool_]]:
+    """Heights (2000, 2000) in um, rows across the weld, and which of them are valid."""
+    rng = np.random.default_rng([seed, 20])
+    x_mm = np.arange(SIZE) * STEP_UM / 1000
+    y_mm = (np.arange(SIZE) - SIZE / 2) * STEP_UM / 1000
+    half_mm, pitch_mm = 0.47, 0.155
+    lathe = 0.6 * np.cumsum(rng.normal(size=SIZE)) / 40
+    lathe += 0.25 * np.sin(2 * np.pi * x_mm / 0.11 + rng.normal(size=SIZE) * 0.1)
+    z = np.broadcast_to(lathe[None, :], (SIZE, SIZE)).copy()
+    z[y_mm > 0] += 14.0
+    end_mm = float(x_mm[-1]) + 2.0
+    for at in np.arange(-1.5, end_mm, pitch_mm):
+        _pulse(
+            z, rng, x_mm, y_mm, float(at) + 0.006 * float(rng.normal()), half_mm * float(rng.normal(1, 0.012)), float(rng.normal(1, 0.12))
+        )
+    steep = np.hypot(*np.gradient(cv2.GaussianBlur(z, (0, 0), 2), STEP_UM))
+    lost = rng.random(z.shape) < 0.01 + 0.7 / (1.0 + np.exp(-(steep - 0.45) / 0.05))
+    z += rng.normal(0, 0.12, z.shape)
+    z += 0.8 * x_mm[None, :] - 1.3 * y_mm[:, None]
+    return z, ~lost
+
+
+def _pulse(z: Array, rng: np.random.Generator, x_mm: Array, y_mm: Array, at_mm: float, half_mm: float, steep: float) -> None:
+    """One frozen pool, drawn over what lies before it: a rounded rear, a ridge where it froze first, a dip, a crown."""
+    columns = np.flatnonzero((x_mm > at_mm - 0.01) & (x_mm < at_mm + 1.4))
+    rows = np.flatnonzero(np.abs(y_mm - 0.005) < half_mm)
+    if columns.size == 0:
+        return
+    y = y_mm[rows][:, None] + 0.006 * float(rng.normal())
+    q = np.clip(1 - (y / half_mm) ** 2, 0, 1)
+    wave = sum(rng.normal() * np.sin(2 * np.pi * y / pitch + rng.uniform(0, 6.3)) for pitch in (0.6, 0.31, 0.17, 0.09))
+    rear_mm = 0.36 * (1 - np.sqrt(q)) + 0.007 * wave
+    behind = x_mm[columns][None, :] - at_mm - rear_mm
+    inside = (behind >= 0) & (q > 0)
+    along = np.clip(behind / 0.155, 0, 9)
+    crown = 38.0 * q**0.8 * float(rng.normal(1, 0.012))
+    ridge = float(rng.normal(16.0, 2.0)) * np.exp(-along / 0.45) - 5.0 * np.exp(-(((along - 0.9) / 0.4) ** 2)) + 5.0 * along
+    step = 7.0 * (1 + np.tanh(y / 0.2))
+    grain = 0.5 * rng.normal(size=(rows.size // 12 + 2, columns.size // 12 + 2))
+    fine = cv2.resize(grain, (columns.size, rows.size), interpolation=cv2.INTER_CUBIC)
+    block = z[np.ix_(rows, columns)]
+    z[np.ix_(rows, columns)] = np.where(inside, crown + step + (ridge * steep + fine) * np.sqrt(q), block)
+
+
+def write_x3p(path: Path, height_um: Array, valid: NDArray[np.bool_], step_um: float, note: str) -> None:
+    """Write an x3p file (ISO 25178-72): int16 heights, a mask of valid points, the note as its comment."""
+    counts = np.where(valid, np.clip(np.round(height_um / HEIGHT_STEP_UM), -32768, 32767), 0).astype("<i2")
+    data, mask = counts.tobytes(), np.packbits(valid.ravel(), bitorder="little").tobytes()
+    rows, columns = height_um.shape
+    record = f"""<?xml version="1.0" encoding="UTF-8"?>
+<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
+<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>
+<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_um * 1e-6:.9g}</Increment><Offset>0</Offset></CX>
+<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_um * 1e-6:.9g}</Increment><Offset>0</Offset></CY>
+<CZ><AxisType>A</AxisType><DataType>I</DataType><Increment>{HEIGHT_STEP_UM * 1e-6:.9g}</Increment><Offset>0</Offset></CZ>
+</Axes></Record1>
+<Record2><Date>2026-11-22T00:00:00</Date><Creator>weldgate</Creator>
+<Instrument><Manufacturer>weldgate</Manufacturer><Model>made surface</Model><Serial>none</Serial><Version>1</Version></Instrument>
+<CalibrationDate>2026-11-22T00:00:00</CalibrationDate><ProbingSystem><Type>Software</Type><Identification>synth.made</Identification>
+</ProbingSystem><Comment>{note}</Comment></Record2>
+<Record3><MatrixDimension><SizeX>{columns}</SizeX><SizeY>{rows}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
+<DataLink><PointDataLink>bindata/data.bin</PointDataLink><MD5ChecksumPointData>{hashlib.md5(data).hexdigest().upper()}</MD5ChecksumPointData>
+<ValidPointsLink>bindata/valid.bin</ValidPointsLink><MD5ChecksumValidPoints>{hashlib.md5(mask).hexdigest().upper()}</MD5ChecksumValidPoints>
+</DataLink></Record3>
+<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
+</p:ISO5436_2>
+"""
+    members = {
+        "main.xml": record.encode(),
+        "bindata/data.bin": data,
+        "bindata/valid.bin": mask,
+        "md5checksum.hex": f"{hashlib.md5(record.encode()).hexdigest()} *main.xml\n".encode(),
+    }
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name, content in members.items():
+            archive.writestr(zipfile.ZipInfo(name, (2026, 11, 22, 0, 0, 0)), content, zipfile.ZIP_DEFLATED, 9)
