@@ -23,8 +23,9 @@ lint: $(VENV)/.dev ## ruff, mypy, import contracts
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(VENV)/.demo ## times of each step on the emulated camera
+bench: $(VENV)/.demo ## times of each step on the emulated camera, crops per second of the generator
 	$(BIN)/python -m deploy.bench
+	$(BIN)/python -m deploy.bench_render
 
 clean: ## remove the virtual environment
 	rm -rf $(VENV)

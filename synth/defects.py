@@ -1,12 +1,13 @@
 """Defects cut from the bead: masks on the polar grid, and their exact outlines.
 
-Source: paper, section 3.5, eq. (3) for holes; arcs without weld are part of `topography.contour`.
+Source: paper, section 3.5, eq. (3) for holes; arcs without weld are part of `contour`.
 """
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
+from skimage.draw import polygon
 
+from synth.contour import Contour
 from synth.part import Hole, Part
 
 Array = NDArray[np.float64]
@@ -26,15 +27,21 @@ def outline(hole: Hole, part: Part, points: int = 180) -> tuple[Array, Array]:
     return np.deg2rad(hole.angle_deg) + along / part.radius_mm, part.radius_mm + hole.offset_mm + across
 
 
-def hole_mask(part: Part, theta_rad: Array, center_mm: Array, half_mm: float, columns: int) -> NDArray[np.bool_]:
-    """Mask (M, columns) over (angle, t in [-1, 1]) of the bead's grid: True where a hole is cut."""
+def hole_mask(part: Part, theta_rad: Array, line: Contour, columns: int) -> NDArray[np.bool_]:
+    """Cells (M, columns) over (angle, t from -1 to 1) of the bead's grid: True where a hole is cut.
+
+    Cell (m, n) lies between the grid's lines m and m + 1, n and n + 1; the last column is no cell.
+    """
     rows = theta_rad.size
-    mask = np.zeros((rows, columns), np.uint8)
+    mask = np.zeros((rows, columns), bool)
+    step = theta_rad[1] - theta_rad[0]
     for hole in part.holes:
         angle, radius = outline(hole, part)
-        row = angle / (2 * np.pi) * rows
-        column = ((radius - np.interp(angle % (2 * np.pi), theta_rad, center_mm)) / half_mm + 1) / 2 * (columns - 1)
-        for turn in (-rows, 0, rows):
-            polygon = np.stack([column, row + turn], axis=1)
-            cv2.fillPoly(mask, [np.round(polygon * 256).astype(np.int32)], 1, shift=8)
-    return mask.astype(bool)
+        at = angle if part.flat else angle % (2 * np.pi)
+        period = None if part.flat else 2 * np.pi
+        center, inner, outer = (np.interp(at, theta_rad, v, period=period) for v in (line.center_mm, line.inner_mm, line.outer_mm))
+        t = np.where(radius > center, (radius - center) / (outer - center), (radius - center) / (center - inner))
+        row, column = (angle - theta_rad[0]) / step - 0.5, (t + 1) / 2 * (columns - 1) - 0.5
+        for turn in (0,) if part.flat else (-rows, 0, rows):
+            mask[polygon(row + turn, column, mask.shape)] = True  # type: ignore[no-untyped-call]
+    return mask

@@ -1,21 +1,35 @@
-"""Exact labels of a rendered part by the camera equation (paper, section 4.3, eq. 5).
+"""Exact labels of rendered parts by the camera equation (paper, section 4.3, eq. 5).
 
 Convention: angle 0 = +x (right), clockwise as seen in the image, [start, end] in degrees, end may exceed 360;
 pixels (x, y) of the given image, centre of its top left pixel at (0, 0); mm on the object.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from skimage.draw import polygon
 from skimage.measure import CircleModel
 
+from synth.contour import contour
 from synth.defects import outline
-from synth.mesh import to_world
+from synth.mesh import angles
 from synth.optics import Optics
-from synth.part import Part, Truth
+from synth.part import MissingWeld, Part, Truth
+from synth.pose import embed, to_world
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outline:
+    """Border of a defect's opening in frame pixels: points (K, 2) as (x, y), closed; kind "hole" or "missing_weld"."""
+
+    kind: str
+    points: Array
+    start_deg: float
+    end_deg: float
 
 
 def ring_px(part: Part, optics: Optics) -> tuple[float, float, float]:
@@ -27,8 +41,45 @@ def ring_px(part: Part, optics: Optics) -> tuple[float, float, float]:
     return float(x), float(y), float(circle.radius)
 
 
+def outlines(part: Part, optics: Optics) -> list[Outline]:
+    """Openings in the weld: the holes, and the bare joint of each missing weld."""
+    found = []
+    for hole in part.holes:
+        angle, radius_mm = outline(hole, part)
+        half_deg = np.rad2deg(hole.length_mm / part.radius_mm / 2)
+        found.append(Outline("hole", _project(part, optics, angle, radius_mm), hole.angle_deg - half_deg, hole.angle_deg + half_deg))
+    if part.missing:
+        theta = angles(part)
+        line = contour(part, theta)
+        for arc in part.missing:
+            angle, inner, outer = _along(part, arc, theta, line.joint_inner_mm, line.joint_outer_mm)
+            edge = [_project(part, optics, angle, outer), _project(part, optics, angle, inner)[::-1]]
+            found.append(Outline("missing_weld", np.concatenate(edge), arc.start_deg, arc.end_deg))
+    return found
+
+
+def _along(part: Part, arc: MissingWeld, theta: Array, *values: Array) -> tuple[Array, ...]:
+    """Angles of an arc on the bead's grid, ends included, and values there."""
+    if part.flat:
+        keep = (theta >= np.deg2rad(arc.start_deg)) & (theta <= np.deg2rad(arc.end_deg))
+        return theta[keep], *(v[keep] for v in values)
+    start, end = float(np.deg2rad(arc.start_deg)), float(np.deg2rad(arc.end_deg))
+    angle = np.linspace(start, end, max(8, int((end - start) / (theta[1] - theta[0]))))
+    return angle, *(np.interp(angle, theta, v, period=2 * np.pi) for v in values)
+
+
+def mask(points: Array, width: int, height: int) -> NDArray[np.bool_]:
+    """Pixels (height, width) whose centres an outline (K, 2) in pixels of that image encloses."""
+    image = np.zeros((height, width), bool)
+    image[polygon(points[:, 1], points[:, 0], image.shape)] = True  # type: ignore[no-untyped-call]
+    return image
+
+
 def label(part: Part, optics: Optics, name: str, origin_px: tuple[int, int], size_px: tuple[int, int]) -> dict[str, Any]:
-    """Label of one image: the window `size_px` (width, height) at `origin_px` (x, y) of the frame. JSON-ready."""
+    """Label of one image: the window `size_px` (width, height) at `origin_px` (x, y) of the frame. JSON-ready.
+
+    A missing weld's box holds the area where the bead should be.
+    """
     x, y, radius = ring_px(part, optics)
     center = (x - origin_px[0], y - origin_px[1])
     defects = []
@@ -84,5 +135,5 @@ def _defect(
 
 
 def _project(part: Part, optics: Optics, angle_rad: Array, radius_mm: Array) -> Array:
-    points = np.stack([radius_mm * np.cos(angle_rad), radius_mm * np.sin(angle_rad), np.zeros_like(angle_rad)], axis=1)
-    return optics.project(to_world(part, points))
+    """Points of the weld at the outer partner's height, in frame pixels (K, 2)."""
+    return optics.project(to_world(part, embed(part, angle_rad, radius_mm, np.array(0.0))))

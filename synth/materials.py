@@ -1,63 +1,114 @@
-"""Reflectance textures of bead and partners, float32 in [0, 1], numpy and OpenCV drawing only.
+"""Surfaces as data: metals by name, and maps of reflectance and soot for bead and partners. numpy and OpenCV drawing only.
 
-Stripes, soot, scratches, dust and the part's other circles (bores, grooves) live here, as darker metal.
+Stripes, scratches, dust, heat tint and the part's other circles change the metal's reflectance; soot is a share of another BSDF.
 """
+
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.mesh import PLATE_MM
+from synth.mesh import plate_mm
+from synth.noise import gaussian
 from synth.part import Part
-from synth.topography import noise
+from synth.switches import Switch
 
 Texture = NDArray[np.float32]
 
+METALS = {
+    "steel": (2.95, 2.93),
+    "aluminium": (0.963, 6.70),
+    "copper": (1.02, 2.577),
+    "nickel-plated": (1.92, 3.61),
+}
+"""Complex refractive index eta + i k at 550 nm. Iron (for steel) and nickel: Johnson and Christy, Phys. Rev. B 9, 5056 (1974);
+copper: Johnson and Christy, Phys. Rev. B 6, 4370 (1972); aluminium: Rakic, Appl. Opt. 34, 4755 (1995)."""
+
+SOOT_REFLECTANCE = 0.04
 PLATE_TEXELS = 1536
+FLAT_TEXELS = 256
+BEAD_ROWS = 64
 
 
-def plate_texture(part: Part) -> Texture:
-    """Partners from above, (1536, 1536): row = y down, column = x right, `PLATE_MM` a side, ring in the middle."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Surface:
+    """Maps (H, W) float32 in [0, 1]: reflectance of the metal against a clean one, and the share of soot over it."""
+
+    reflectance: Texture
+    soot: Texture
+
+
+def plate_surface(part: Part) -> Surface:
+    """Partners from above, `plate_mm(part)` a side, weld in the middle: row = y down, column = x right."""
     rng = np.random.default_rng([part.seed, 5])
-    n = PLATE_TEXELS
-    mm = n / PLATE_MM
-    stripes = sum(weight * _field(rng, (96, n), (8.0, grain * mm)) for weight, grain in ((0.5, 0.5), (0.35, 0.12), (0.4, 0.03)))
-    image = part.partner_reflectance + float(rng.uniform(0.02, 0.10)) * np.asarray(stripes) + 0.02 * _field(rng, (384, 384), (12.0, 12.0))
+    n = FLAT_TEXELS if part.flat else PLATE_TEXELS
+    mm = n / plate_mm(part)
+    image = np.full((n, n), part.partner_reflectance, np.float32)
+    stripes = sum(weight * _field(rng, n, (8.0, grain), mm) for weight, grain in ((0.5, 0.5), (0.35, 0.12), (0.4, 0.03)))
+    amount = float(rng.uniform(0.03, 0.13))
+    if Switch.PARTNER_STRIPES in part.switches:
+        image += amount * np.asarray(stripes)
+    image += 0.02 * _field(rng, n, (0.2, 0.2), mm)
 
-    y, x = ((np.indices((n, n), np.float32) + 0.5) / mm - PLATE_MM / 2).astype(np.float32)
-    away = np.maximum(np.abs(np.hypot(x, y) - part.radius_mm) - part.half_width_mm, 0)
-    cloud = sum(
-        weight * _field(rng, (768, 768), (grain * mm / 2, grain * mm / 2))
-        for weight, grain in ((0.7, 2.5), (0.4, 0.6), (0.35, 0.2), (0.2, 0.07))
-    )
-    reach_mm, amount = float(rng.uniform(0.2, 0.7)), float(rng.uniform(-2.2, 0.6))
-    soot = np.clip((np.asarray(cloud) + amount) * 0.7 + 0.3, 0, 1) * np.exp(-((away / reach_mm) ** 2))
-    image = np.asarray(np.clip(image * (1 - 0.85 * soot), 0.03, 1.0), np.float32)
-
-    _circles(rng, image, mm)
-    _scratches_and_dust(rng, image, mm)
-    return image
+    y, x = ((np.indices((n, n), np.float32) + 0.5) / mm - n / mm / 2).astype(np.float32)
+    if part.heat_tint > 0:
+        away = _away(part, x, y)
+        reach = float(rng.uniform(0.15, 0.6))
+        rings = 0.75 + 0.25 * np.cos(away / reach * 9.0)
+        image *= 1.0 - 0.7 * part.heat_tint * np.exp(-((away / reach) ** 2)) * rings * (0.8 + 0.2 * _field(rng, n, (1.0, 1.0), mm))
+    if part.circles:
+        _circles(rng, image, mm)
+    _scratches_and_dust(part, rng, image, mm)
+    return Surface(np.clip(image, 0.03, 1.0), _soot_beside(part, rng, x, y, mm))
 
 
-def _field(rng: np.random.Generator, shape: tuple[int, int], cells: tuple[float, float]) -> Texture:
-    """Noise made on a coarser grid, (1536, 1536)."""
-    size = (PLATE_TEXELS, PLATE_TEXELS)
-    return np.asarray(cv2.resize(noise(rng, shape, cells).astype(np.float32), size, interpolation=cv2.INTER_LINEAR))
+def _soot_beside(part: Part, rng: np.random.Generator, x: Texture, y: Texture, mm: float) -> Texture:
+    """Soot fades away from the weld's edges, and is thinner where no weld ran."""
+    n = x.shape[0]
+    if Switch.SOOT_AT_EDGES not in part.switches or part.soot == 0:
+        return np.zeros((n, n), np.float32)
+    away = _away(part, x, y)
+    cloud = sum(weight * _field(rng, n, (grain, grain), mm) for weight, grain in ((0.6, 1.2), (0.5, 0.5), (0.35, 0.2), (0.2, 0.07)))
+    reach = float(rng.uniform(0.1, 0.6))
+    amount = -2.2 + 2.2 * part.soot
+    angle = np.rad2deg(x / part.radius_mm if part.flat else np.arctan2(y, x))
+    ran = np.ones_like(x)
+    for arc in part.missing:
+        ran[(angle - arc.start_deg) % 360 <= arc.end_deg - arc.start_deg] = 0.35
+    return np.asarray(np.clip((np.asarray(cloud) + amount) * 0.7 + 0.3, 0, 0.95) * np.exp(-((away / reach) ** 2)) * ran, np.float32)
+
+
+def _away(part: Part, x: Texture, y: Texture) -> Texture:
+    """Distance from the weld's border, 0 on the weld, mm."""
+    across = y if part.flat else np.hypot(x, y) - part.radius_mm
+    return np.asarray(np.maximum(np.abs(across) - part.half_width_mm, 0), np.float32)
+
+
+def _field(rng: np.random.Generator, n: int, grain_mm: tuple[float, float], mm: float) -> Texture:
+    """Noise of a grain in mm along (y, x), (n, n), made no finer than the grain needs."""
+    shape = tuple(min(n, max(32, int(n / mm / g * 4))) for g in grain_mm)
+    cells = (grain_mm[0] * mm * shape[0] / n, grain_mm[1] * mm * shape[1] / n)
+    small = gaussian(rng, (shape[0], shape[1]), cells).astype(np.float32)
+    return np.asarray(cv2.resize(small, (n, n), interpolation=cv2.INTER_LINEAR))
 
 
 def _circles(rng: np.random.Generator, image: Texture, mm: float) -> None:
     """Bore inside, groove or step outside, roughly concentric: never where a weld could be."""
+    middle = image.shape[0] / mm / 2
     for low, high, chance in ((1.2, 3.6, 0.6), (7.4, 9.2, 0.7), (9.3, 9.8, 0.3)):
         if rng.random() > chance:
             continue
-        center = tuple(int(v * 256) for v in (PLATE_MM / 2 + rng.uniform(-0.25, 0.25, 2)) * mm)
+        center = tuple(int(v * 256) for v in (middle + rng.uniform(-0.25, 0.25, 2)) * mm)
         radius, width = int(rng.uniform(low, high) * mm * 256), max(1, int(rng.uniform(0.04, 0.3) * mm))
         cv2.circle(image, center, radius, float(rng.uniform(0.05, 0.35)), width, cv2.LINE_AA, 8)
 
 
-def _scratches_and_dust(rng: np.random.Generator, image: Texture, mm: float) -> None:
+def _scratches_and_dust(part: Part, rng: np.random.Generator, image: Texture, mm: float) -> None:
+    """Counts are those of a whole part; a flat crop gets its share by area."""
     n = image.shape[0]
-    for _ in range(int(rng.integers(0, 14))):
+    share = 0.05 if part.flat else 1.0
+    for _ in range(rng.poisson(part.scratches * share) if part.flat else part.scratches):
         start = rng.uniform(0, n, 2)
         bend = rng.uniform(-0.4, 0.4)
         angle, length = rng.uniform(0, 2 * np.pi), rng.uniform(0.5, 4) * mm
@@ -66,22 +117,31 @@ def _scratches_and_dust(rng: np.random.Generator, image: Texture, mm: float) -> 
         curve = start + length * np.cumsum(np.hstack([np.cos(heading), np.sin(heading)]), axis=0) / 30
         shade = float(np.clip(image.mean() * rng.uniform(0.6, 1.25), 0, 1))
         cv2.polylines(image, [np.round(curve * 16).astype(np.int32)], False, shade, 1, cv2.LINE_AA, 4)
-    for _ in range(int(rng.integers(0, 40))):
+    for _ in range(rng.poisson(part.dust * share) if part.flat else part.dust):
         center = tuple(int(v) for v in rng.uniform(0, n, 2))
-        cv2.circle(image, center, int(rng.integers(1, 4)), float(rng.uniform(0.05, 0.4)), -1, cv2.LINE_AA)
+        cv2.circle(image, center, max(1, int(rng.uniform(0.015, 0.05) * mm)), float(rng.uniform(0.05, 0.4)), -1, cv2.LINE_AA)
 
 
-def bead_texture(part: Part) -> Texture:
-    """Bead over (across, angle), (64, 2048): row 0 = inner border, column 0 = angle 0; soot darkens patches and borders."""
+def bead_surface(part: Part, length_mm: float) -> Surface:
+    """Bead over (across, angle), (64, W) with `length_mm` along W: row 0 = inner border, column 0 = the first angle."""
     rng = np.random.default_rng([part.seed, 6])
-    shape = (64, 2048)
-    t = np.linspace(-1, 1, shape[0])[:, None]
-    image = np.clip(part.bead_reflectance + 0.05 * noise(rng, shape, (12, 30)), 0, 1)
-    patches = np.clip(noise(rng, shape, (20, 60)) + rng.uniform(-2.5, 0.2), 0, 1)
-    border = np.abs(t) ** 6 * np.clip(0.5 + 0.5 * noise(rng, shape, (64, 80)), 0, 1) * rng.uniform(0, 0.8)
-    sooty = np.asarray(image * (1 - 0.6 * patches) * (1 - border), np.float32)
-    _bead_scratches(part, sooty)
-    return sooty
+    rows, columns = shape = (BEAD_ROWS, max(128, round(length_mm * 58.5)))
+    cell = (rows / (2 * part.half_width_mm), columns / length_mm)
+    t = np.linspace(-1, 1, rows)[:, None]
+    image = np.clip(part.bead_reflectance + 0.05 * gaussian(rng, shape, (0.19 * cell[0], 0.51 * cell[1])), 0, 1)
+    patches = gaussian(rng, shape, (0.31 * cell[0], 1.0 * cell[1])) + 0.5 * gaussian(rng, shape, (0.08 * cell[0], 0.12 * cell[1]))
+    border = np.abs(t) ** 6 * np.clip(0.5 + 0.5 * gaussian(rng, shape, (rows, 1.4 * cell[1])), 0, 1)
+    soot = np.zeros(shape)
+    black = float(rng.uniform(0.45, 0.92))
+    if Switch.SOOT_ON_WELD in part.switches:
+        soot = np.maximum(
+            soot, np.clip(float(rng.uniform(0.5, 2.0)) * (patches - 2.2 + 2.4 * part.soot), 0, 1) * black * float(part.soot > 0)
+        )
+    if Switch.SOOT_AT_EDGES in part.switches:
+        soot = np.maximum(soot, border * min(1.0, 1.2 * part.soot))
+    reflectance = np.asarray(image, np.float32)
+    _bead_scratches(part, reflectance)
+    return Surface(reflectance, np.asarray(np.clip(soot, 0, 0.95), np.float32))
 
 
 def _bead_scratches(part: Part, image: Texture) -> None:

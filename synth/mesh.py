@@ -1,21 +1,28 @@
 """Part to triangle meshes, numpy only. Vertices in world coordinates: x right, y up, z to the camera, mm."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.contour import Contour, contour
 from synth.defects import hole_mask
 from synth.part import Part
-from synth.topography import Contour, contour, relief
+from synth.pose import embed, pose
+from synth.spectrum import WeldModel
+from synth.topography import relief
 
 Array = NDArray[np.float64]
 
-ANGLES = 4096
-ACROSS = 96
+ANGLES = 3072
+"""Columns of the bead's grid round the ring: 11 um each."""
+ACROSS = 80
 PLATE_MM = 24.0
 """Side of the square that the partners' texture covers."""
+FLAT_MM = 2.4
+"""The same of a flat crop; its weld is 2 mm long."""
+FLAT_LENGTH_MM = 2.0
 FLOOR_MM = -0.45
 """Height of what lies below the joint."""
 
@@ -33,37 +40,57 @@ class Mesh:
     faces: NDArray[np.uint32]
 
 
-def part_meshes(part: Part) -> dict[str, Mesh]:
-    """Meshes of a part by name: "bead" (absent without any weld), "inner", "outer", "floor"."""
-    theta: Array = np.arange(ANGLES, dtype=np.float64) * (2 * np.pi / ANGLES)
+def angles(part: Part) -> Array:
+    """Angles (M,) of the bead's grid, rad: the whole turn, or the piece of a flat crop round 0."""
+    if part.flat:
+        half = FLAT_LENGTH_MM / 2 / part.radius_mm
+        return np.linspace(-half, half, round(ANGLES * half / np.pi))
+    return np.arange(ANGLES, dtype=np.float64) * (2 * np.pi / ANGLES)
+
+
+def plate_mm(part: Part) -> float:
+    """Side of the square that the partners' texture covers."""
+    return FLAT_MM if part.flat else PLATE_MM
+
+
+def part_meshes(part: Part, model: WeldModel) -> dict[str, Mesh]:
+    """Meshes by material: "plate" (both partners and spatter), "floor", "bead" (absent without any weld), "fibre" (if any)."""
+    theta = angles(part)
     line = contour(part, theta)
-    pose = _pose(part)
-    meshes = {
-        "inner": _plate(theta, np.linspace(0.0, 1.0, 5)[:, None] * line.inner_mm, part.step_mm, pose),
-        "outer": _plate(theta, _towards(line.outer_mm, _rim(theta)), 0.0, pose),
-        "floor": _plate(theta, np.array([[-1.2], [1.2]]) + part.radius_mm + 0 * theta, FLOOR_MM, pose),
-    }
+    reach = FLAT_MM / 2
+    inner_end = part.radius_mm - reach if part.flat else 0.0
+    outer_end = np.full_like(theta, part.radius_mm + reach) if part.flat else _rim(theta)
+    inner = inner_end + np.linspace(0.0, 1.0, 5)[:, None] * (line.inner_mm - inner_end)
+    share = np.array([0.0, 0.02, 0.1, 0.4, 1.0])[:, None]
+    outer = line.outer_mm + share * (outer_end - line.outer_mm)
+    plates = [_plate(part, theta, inner, part.step_mm), _plate(part, theta, outer, 0.0)]
+    floor = _plate(part, theta, np.array([[-1.2], [1.2]]) + part.radius_mm + 0 * theta, FLOOR_MM)
+    meshes = {"floor": floor}
+    height = None
     if line.present.any():
-        meshes["bead"] = _bead(part, theta, line, pose)
+        meshes["bead"], height = _bead(part, theta, line, model)
+    plates += _spatter(part, line, theta, height)
+    meshes["plate"] = join(plates)
+    if part.fibres:
+        meshes["fibre"] = join(_fibres(part))
     return meshes
 
 
-def _pose(part: Part) -> Array:
-    """4 x 4 matrix from part coordinates (y down) to world coordinates (y up)."""
-    ax, ay = np.deg2rad(part.tilt_deg)
-    rx = np.array([[1, 0, 0], [0, np.cos(ax), -np.sin(ax)], [0, np.sin(ax), np.cos(ax)]])
-    ry = np.array([[np.cos(ay), 0, np.sin(ay)], [0, 1, 0], [-np.sin(ay), 0, np.cos(ay)]])
-    flip = np.diag([1.0, -1.0, 1.0])
-    matrix = np.eye(4)
-    matrix[:3, :3] = ry @ rx @ flip
-    matrix[:2, 3] = part.center_mm[0], -part.center_mm[1]
-    return matrix
+def join(meshes: list[Mesh]) -> Mesh:
+    """One mesh of several."""
+    starts = np.cumsum([0] + [len(m.vertices) for m in meshes[:-1]])
+    return Mesh(
+        np.concatenate([m.vertices for m in meshes]),
+        np.concatenate([m.normals for m in meshes]),
+        np.concatenate([m.uv for m in meshes]),
+        np.concatenate([m.faces + np.uint32(s) for m, s in zip(meshes, starts, strict=True)]),
+    )
 
 
-def to_world(part: Part, points_mm: Array) -> Array:
-    """Part coordinates (K, 3) to world coordinates (K, 3), mm."""
-    pose = _pose(part)
-    return np.asarray(points_mm @ pose[:3, :3].T + pose[:3, 3])
+def moved(mesh: Mesh, x_mm: float, tile: int, tiles: int) -> Mesh:
+    """The mesh `x_mm` further right, its texture coordinates in tile number `tile` of an atlas of `tiles` side by side."""
+    uv = np.asarray((mesh.uv + np.array([tile, 0], np.float32)) / np.array([tiles, 1], np.float32), np.float32)
+    return replace(mesh, vertices=mesh.vertices + np.array([x_mm, 0, 0], np.float32), uv=uv)
 
 
 def _rim(theta: Array) -> Array:
@@ -71,56 +98,103 @@ def _rim(theta: Array) -> Array:
     return np.asarray((np.abs(np.cos(theta) / 11.0) ** 10 + np.abs(np.sin(theta) / 10.0) ** 10) ** -0.1)
 
 
-def _towards(start_mm: Array, end_mm: Array) -> Array:
-    share = np.array([0.0, 0.02, 0.1, 0.4, 1.0])[:, None]
-    return np.asarray(start_mm + share * (end_mm - start_mm))
-
-
-def _plate(theta: Array, radius_mm: Array, z_mm: float, pose: Array) -> Mesh:
+def _plate(part: Part, theta: Array, radius_mm: Array, z_mm: float) -> Mesh:
     """Flat rings: radius_mm (K, M), innermost first."""
-    x, y = radius_mm * np.cos(theta), radius_mm * np.sin(theta)
-    points = np.stack([x, y, np.full_like(x, z_mm)], axis=-1)
-    uv = np.stack([x, y], axis=-1) / PLATE_MM + 0.5
+    points = embed(part, theta, radius_mm, np.array(z_mm))
     normals = np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
-    return _mesh(points, normals, uv, np.ones((radius_mm.shape[0] - 1, theta.size), bool), pose)
+    return _mesh(part, points, normals, _plan_uv(part, points), np.ones((radius_mm.shape[0] - 1, theta.size), bool))
 
 
-def _bead(part: Part, theta: Array, line: Contour, pose: Array) -> Mesh:
+def _plan_uv(part: Part, points: Array) -> Array:
+    return np.asarray(points[..., :2] / plate_mm(part) + 0.5)
+
+
+def _bead(part: Part, theta: Array, line: Contour, model: WeldModel) -> tuple[Mesh, Array]:
     t = np.linspace(-1.0, 1.0, ACROSS)
-    z = relief(part, theta, t)
-    hole = hole_mask(part, theta, line.center_mm, part.half_width_mm, ACROSS)
+    z = relief(part, theta, t, model)
+    hole = hole_mask(part, theta, line, ACROSS)
     if hole.any():
         z = z - _rim_sink(hole)
     below, above = np.clip(-t, 0, 1)[:, None], np.clip(t, 0, 1)[:, None]
     radius = line.center_mm + above * (line.outer_mm - line.center_mm) + below * (line.inner_mm - line.center_mm)
     lift = np.clip((line.outer_mm - line.inner_mm) / part.half_width_mm, 0, 1)
     height = z.T * lift + part.step_mm * (1 - t[:, None]) / 2
-    points = np.stack([radius * np.cos(theta), radius * np.sin(theta), height], axis=-1)
-    along = np.roll(points, -1, axis=1) - np.roll(points, 1, axis=1)
-    outwards = np.gradient(points, axis=0)
-    normals = np.cross(outwards, along)
+    points = embed(part, theta, radius, height)
+    along = np.gradient(points, axis=1) if part.flat else np.roll(points, -1, axis=1) - np.roll(points, 1, axis=1)
+    normals = np.cross(np.gradient(points, axis=0), along)
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True) + 1e-12
-    uv = np.stack(np.broadcast_arrays((theta / (2 * np.pi))[None, :], ((t + 1) / 2)[:, None]), axis=-1)
+    u = (theta - theta[0]) / (np.ptp(theta) if part.flat else 2 * np.pi)
+    uv = np.stack(np.broadcast_arrays(u[None, :], ((t + 1) / 2)[:, None]), axis=-1)
     keep = ~hole.T[:-1] & line.present[None, :] & np.roll(line.present, -1)[None, :]
-    return _mesh(points, normals, uv, keep, pose)
+    return _mesh(part, points, normals, uv, keep), height
 
 
 def _rim_sink(hole: NDArray[np.bool_]) -> Array:
     """The melt sinks towards a hole's edge: depth (M, N) in mm."""
     wrapped = np.concatenate([hole[-64:], hole, hole[:64]])
     cells = cv2.distanceTransform((~wrapped).astype(np.uint8), cv2.DIST_L2, 3)[64:-64]
-    return 0.03 * np.exp(-cells.astype(np.float64) / 3.0)
+    return 0.03 * np.exp(-cells.astype(np.float64) / 2.5)
 
 
-def _mesh(points: Array, normals: Array, uv: Array, keep: NDArray[np.bool_], pose: Array) -> Mesh:
-    """Join a (K, M) grid of points, periodic along its second axis, into triangles; `keep` (K - 1, M) selects cells."""
+def _spatter(part: Part, line: Contour, theta: Array, height: Array | None) -> list[Mesh]:
+    """Droplets: domes on the partners or on the bead."""
+    rng = np.random.default_rng([part.seed, 12])
+    found = []
+    for _ in range(part.spatter):
+        at = float(rng.uniform(theta[0], theta[-1]))
+        away_mm = float(rng.laplace(0.0, 0.5))
+        size_mm = float(np.exp(rng.uniform(np.log(0.015), np.log(0.11))))
+        index = int(np.searchsorted(theta, at)) % theta.size
+        radius = part.radius_mm + np.sign(away_mm) * min(abs(away_mm), 1.05)
+        base = part.step_mm if radius < line.inner_mm[index] else 0.0
+        if line.inner_mm[index] <= radius <= line.outer_mm[index]:
+            if height is None or not line.present[index]:
+                continue
+            share = (radius - line.inner_mm[index]) / (line.outer_mm[index] - line.inner_mm[index])
+            base = float(height[round(share * (ACROSS - 1)), index])
+        found.append(_dome(part, at, radius, base, size_mm, float(rng.uniform(0.3, 0.9))))
+    return found
+
+
+def _dome(part: Part, at_rad: float, radius_mm: float, base_mm: float, size_mm: float, flatness: float) -> Mesh:
+    polar, around = np.meshgrid(np.linspace(0.02, np.pi / 2, 8), np.linspace(0, 2 * np.pi, 20, endpoint=False), indexing="ij")
+    local = np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), flatness * np.cos(polar)], axis=-1)
+    points = embed(part, np.array(at_rad), np.array(radius_mm), np.array(base_mm)) + size_mm * local
+    normals = local / np.array([1.0, 1.0, flatness**2])
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    return _mesh(part, points, normals, _plan_uv(part, points), np.ones((7, 20), bool), closed=True)
+
+
+def _fibres(part: Part) -> list[Mesh]:
+    """Thin curved ribbons just above the surface."""
+    rng = np.random.default_rng([part.seed, 13])
+    found = []
+    for _ in range(part.fibres):
+        theta = float(rng.uniform(-0.15, 0.15)) if part.flat else float(rng.uniform(0, 2 * np.pi))
+        start = embed(part, np.array(theta), np.array(part.radius_mm + rng.normal(0, 0.5)), np.array(0.1))
+        steps = np.linspace(0, 1, 40)
+        heading = rng.uniform(0, 2 * np.pi) + rng.normal(0, 1.2) * steps + rng.normal(0, 1.0) * steps**2
+        length = float(rng.uniform(0.6, 3.5))
+        curve = np.cumsum(np.stack([np.cos(heading), np.sin(heading), 0 * heading], axis=1), axis=0) * length / 40
+        side = np.stack([-np.sin(heading), np.cos(heading), 0 * heading], axis=1) * float(rng.uniform(0.006, 0.014))
+        points = start + np.stack([curve + side, curve - side])
+        normals = np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
+        found.append(_mesh(part, points, normals, np.full((*points.shape[:2], 2), 0.5), np.ones((1, 40), bool), closed=False))
+    return found
+
+
+def _mesh(part: Part, points: Array, normals: Array, uv: Array, keep: NDArray[np.bool_], closed: bool | None = None) -> Mesh:
+    """Join a (K, M, 3) grid of points, closed along its second axis round a ring, into triangles; `keep` (K - 1, M) selects cells."""
     around = points.shape[1]
+    if part.flat if closed is None else not closed:
+        keep = keep & (np.arange(around) < around - 1)[None, :]
     k, m = np.nonzero(keep)
     right = (m + 1) % around
     a, b, c, d = k * around + m, k * around + right, (k + 1) * around + m, (k + 1) * around + right
     faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
-    world = points.reshape(-1, 3) @ pose[:3, :3].T + pose[:3, 3]
-    turned = normals.reshape(-1, 3) @ pose[:3, :3].T
+    matrix = pose(part)
+    world = points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    turned = normals.reshape(-1, 3) @ matrix[:3, :3].T
     return Mesh(
         world.astype(np.float32),
         turned.astype(np.float32),

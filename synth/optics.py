@@ -1,4 +1,4 @@
-"""The station's optics as data: camera, lens and lights, and the camera equation (paper, section 3.1 and eq. 5).
+"""The station's optics as data: camera and lens, and the camera equation (paper, section 3.1 and eq. 5).
 
 World: x right, y up, z to the camera, mm, origin where the optical axis meets the object plane.
 Pixels: (x, y), centre of the top left pixel at (0, 0), y down.
@@ -20,21 +20,11 @@ class Optics:
     height_px: int = 2160
     distance_mm: float = 216.0
     pixel_mm: float = 0.013
-    light_height_mm: float = 150.0
-    light_rings: tuple[tuple[float, int], ...] = ((17.0, 11), (33.0, 22))
-    """Radius in mm and number of spots of each ring: 33 in all, through-hole in the middle."""
-    light_opening_deg: float = 35.0
-    """Half the opening angle of a spot."""
 
     @property
     def focal_px(self) -> float:
         """Focal length in pixels."""
         return self.distance_mm / self.pixel_mm
-
-    @property
-    def fov_x_deg(self) -> float:
-        """Horizontal field of view."""
-        return float(2 * np.rad2deg(np.arctan(self.width_px * self.pixel_mm / 2 / self.distance_mm)))
 
     def project(self, points_mm: Array) -> Array:
         """World points (K, 3) to pixels (K, 2) as (x, y): eq. (5) with R, t of a camera on the z axis."""
@@ -42,11 +32,3 @@ class Optics:
         x = self.width_px / 2 - 0.5 + self.focal_px * points_mm[:, 0] / depth
         y = self.height_px / 2 - 0.5 - self.focal_px * points_mm[:, 1] / depth
         return np.stack([x, y], axis=1)
-
-    def light_positions_mm(self) -> Array:
-        """Positions (33, 3) of the spots."""
-        rows = []
-        for radius, count in self.light_rings:
-            angle = (np.arange(count) + 0.5) * 2 * np.pi / count
-            rows.append(np.stack([radius * np.cos(angle), radius * np.sin(angle), np.full(count, self.light_height_mm)], axis=1))
-        return np.concatenate(rows)

@@ -10,6 +10,7 @@ from enum import StrEnum
 import numpy as np
 
 from synth.recipe import Range, Recipe
+from synth.switches import ALL, Switch
 
 
 class Truth(StrEnum):
@@ -87,6 +88,31 @@ class Part:
     read_noise_dn: float
     holes: tuple[Hole, ...] = ()
     missing: tuple[MissingWeld, ...] = ()
+    flat: bool = False
+    """The paper's crop: a straight piece of weld, angles laid out along x at `radius_mm`."""
+    switches: frozenset[Switch] = ALL
+    material: str = "aluminium"
+    spectral: bool = False
+    """Relief from the measurement's spectrum, eq. (2); else ripples drawn directly."""
+    height_scale: float = 1.0
+    """Factor of the spectral relief's height."""
+    shift_scale: float = 1.0
+    """Factor of the fitted row shift."""
+    bead_offset_mm: float = 0.0
+    joint_wave_mm: float = 0.012
+    overlap_mm: float = 0.0
+    overlap_width: float = 0.0
+    overlap_height_mm: float = 0.0
+    crater_mm: float = 0.03
+    spatter: int = 0
+    fibres: int = 0
+    scratches: int = 0
+    dust: int = 0
+    heat_tint: float = 0.0
+    soot: float = 0.0
+    veil: float = 0.0
+    second_light: float = 0.0
+    circles: bool = True
 
     @property
     def truth(self) -> Truth:
@@ -96,8 +122,18 @@ class Part:
         return Truth.HOLE if self.holes else Truth.OK
 
 
-def draw_part(seed: int, truth: Truth, recipe: Recipe) -> Part:
-    """Draw the part number `seed` with the wished truth from `recipe`. Same arguments, same part."""
+def draw_part(
+    seed: int,
+    truth: Truth,
+    recipe: Recipe,
+    switches: frozenset[Switch] = ALL,
+    defects: tuple[tuple[Hole, ...], tuple[MissingWeld, ...]] | None = None,
+    flat: bool = False,
+) -> Part:
+    """Draw the part number `seed` with the wished truth from `recipe`. Same arguments, same part.
+
+    `defects` (holes, missing arcs) takes the place of drawn ones. A flat crop lies in the middle of the picture.
+    """
     rng = np.random.default_rng([seed, 1])
     look = np.random.default_rng([seed, 8])
 
@@ -107,18 +143,24 @@ def draw_part(seed: int, truth: Truth, recipe: Recipe) -> Part:
     def seen(bounds: Range) -> float:
         return float(look.uniform(*bounds))
 
+    def some(bounds: tuple[int, int]) -> int:
+        return int(look.integers(bounds[0], bounds[1] + 1))
+
     half_width_mm = of(recipe.half_width_mm)
     radius_mm = of(recipe.radius_mm)
     holes: tuple[Hole, ...] = ()
     missing: tuple[MissingWeld, ...] = ()
-    if truth is Truth.HOLE:
+    if defects is not None:
+        holes, missing = defects
+    elif truth is Truth.HOLE:
         count = int(rng.integers(recipe.holes[0], recipe.holes[1] + 1))
-        holes = tuple(_draw_hole(rng, recipe, half_width_mm) for _ in range(count))
+        holes = tuple(draw_hole(rng, recipe, half_width_mm) for _ in range(count))
     elif truth is Truth.MISSING_WELD:
         missing = _draw_missing(rng, recipe)
+    shift_mm = (float(rng.uniform(-1, 1)) * recipe.shift_mm, float(rng.uniform(-1, 1)) * recipe.shift_mm)
     return Part(
         seed=seed,
-        center_mm=(float(rng.uniform(-1, 1)) * recipe.shift_mm, float(rng.uniform(-1, 1)) * recipe.shift_mm),
+        center_mm=(0.0, 0.0) if flat else shift_mm,
         tilt_deg=(float(rng.uniform(-1, 1)) * recipe.tilt_deg, float(rng.uniform(-1, 1)) * recipe.tilt_deg),
         radius_mm=radius_mm,
         half_width_mm=half_width_mm,
@@ -135,7 +177,7 @@ def draw_part(seed: int, truth: Truth, recipe: Recipe) -> Part:
         sparsity=seen(recipe.sparsity),
         chevron=seen(recipe.chevron),
         undercut_mm=seen(recipe.undercut_mm),
-        bead_scratches=int(look.integers(recipe.bead_scratches[0], recipe.bead_scratches[1] + 1)),
+        bead_scratches=some(recipe.bead_scratches),
         bead_reflectance=seen(recipe.bead_reflectance),
         partner_reflectance=seen(recipe.partner_reflectance),
         alpha_weld=seen(recipe.alpha_weld),
@@ -149,15 +191,38 @@ def draw_part(seed: int, truth: Truth, recipe: Recipe) -> Part:
         read_noise_dn=of(recipe.read_noise_dn),
         holes=holes,
         missing=missing,
+        flat=flat,
+        switches=switches,
+        material=recipe.material,
+        spectral=bool(look.random() < recipe.spectral_share),
+        height_scale=seen(recipe.height_scale),
+        shift_scale=seen(recipe.shift_scale),
+        bead_offset_mm=seen(recipe.bead_offset_mm),
+        joint_wave_mm=seen(recipe.joint_wave_mm),
+        overlap_mm=seen(recipe.overlap_mm),
+        overlap_width=seen(recipe.overlap_width),
+        overlap_height_mm=seen(recipe.overlap_height_mm),
+        crater_mm=seen(recipe.crater_mm),
+        spatter=some(recipe.spatter),
+        fibres=some(recipe.fibres),
+        scratches=some(recipe.scratches),
+        dust=some(recipe.dust),
+        heat_tint=seen(recipe.heat_tint),
+        soot=seen(recipe.soot),
+        veil=seen(recipe.veil),
+        second_light=seen(recipe.second_light) if look.random() < recipe.second_light_share else 0.0,
+        circles=recipe.circles,
     )
 
 
-def _draw_hole(rng: np.random.Generator, recipe: Recipe, half_width_mm: float) -> Hole:
+def draw_hole(rng: np.random.Generator, recipe: Recipe, half_width_mm: float, angle_deg: float | None = None) -> Hole:
+    """Draw a hole (paper, eq. 3), small to long, at `angle_deg` or anywhere round the ring."""
     length_mm = float(np.exp(rng.uniform(*np.log(recipe.hole_length_mm))))
     width_mm = min(length_mm * float(rng.uniform(0.8, 1.2)), float(rng.uniform(0.2, 1.1)) * half_width_mm)
     room_mm = max(0.0, 0.75 * half_width_mm - width_mm / 2)
+    anywhere_deg = float(rng.uniform(0, 360))
     return Hole(
-        angle_deg=float(rng.uniform(0, 360)),
+        angle_deg=anywhere_deg if angle_deg is None else angle_deg,
         offset_mm=float(rng.uniform(-1, 1)) * room_mm,
         length_mm=length_mm,
         width_mm=width_mm,

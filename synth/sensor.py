@@ -1,4 +1,4 @@
-"""Radiance to camera counts: exposure, lens blur, vignetting, shot and read noise, clipping, 8 bit."""
+"""Radiance to camera counts: lens blur, veiling glare, vignetting, exposure, shot and read noise, clipping, 8 bit."""
 
 import cv2
 import numpy as np
@@ -9,14 +9,18 @@ from synth.part import Part
 
 FULL_WELL_E = 10_000.0
 """Electrons at grey level 255."""
-NOMINAL_GAIN = 8.0
+VEIL_RADIANCE = 8.0
+"""What a clean partner sends: the source of the veil."""
+NOMINAL_GAIN = 17.0
 """Grey levels per unit of radiance at exposure 1."""
 
 
 def expose(radiance: NDArray[np.float32], part: Part, optics: Optics, origin_px: tuple[int, int] = (0, 0)) -> NDArray[np.uint8]:
-    """Grey levels (H, W) uint8 of a radiance window whose top left pixel lies at `origin_px` (x, y) of the frame."""
+    """Grey levels (H, W) uint8 of a radiance window (H, W) whose top left pixel lies at `origin_px` (x, y) of the frame."""
     rng = np.random.default_rng([part.seed, 7])
     image = cv2.GaussianBlur(radiance, (0, 0), part.defocus_px)
+    if part.veil > 0:
+        image = (1 - part.veil) * image + part.veil * VEIL_RADIANCE
     height, width = image.shape
     x = (np.arange(width) + origin_px[0] - optics.width_px / 2) / optics.focal_px
     y = (np.arange(height) + origin_px[1] - optics.height_px / 2) / optics.focal_px

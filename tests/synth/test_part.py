@@ -1,15 +1,22 @@
+"""A part as data: drawn, outlined, meshed and labelled."""
+
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from synth.contour import contour, overlap_weight
 from synth.defects import hole_mask, outline
 from synth.labels import label, ring_px
-from synth.mesh import part_meshes
+from synth.mesh import angles, part_meshes
 from synth.optics import Optics
 from synth.part import Hole, Truth, draw_part
-from synth.recipe import Recipe
-from synth.topography import contour, relief
+from synth.recipe import PAPER, WIDE, Recipe
+from synth.spectrum import WeldModel
+from synth.switches import ALL, Switch
+from synth.topography import relief
 
 SEEDS = st.integers(0, 10**6)
 THETA = np.arange(4096) * (2 * np.pi / 4096)
@@ -40,11 +47,12 @@ def test_pixel_pitch_is_13_um() -> None:
     assert a == pytest.approx([2099.5, 1079.5])
 
 
-def test_relief_is_repeatable_and_closes_round_the_ring() -> None:
-    part = draw_part(4, Truth.OK, Recipe())
+@pytest.mark.parametrize("spectral", [True, False])
+def test_relief_is_repeatable_and_closes_round_the_ring(spectral: bool, model: WeldModel) -> None:
+    part = replace(draw_part(4, Truth.OK, Recipe()), spectral=spectral, start_deg=180.0)
     t = np.linspace(-1, 1, 32)
-    z = relief(part, THETA, t)
-    assert (z == relief(part, THETA, t)).all()
+    z = relief(part, THETA, t, model)
+    assert (z == relief(part, THETA, t, model)).all()
     assert 0.002 < z.std() < 0.1
     seam = np.abs(z[0] - z[-1]).mean()
     assert seam < 3 * np.abs(np.diff(z, axis=0)).mean()
@@ -60,10 +68,8 @@ def test_a_hole_is_as_long_and_wide_as_stated(length: float, width: float, d: fl
 
 def test_a_hole_at_the_seam_is_cut_on_both_sides() -> None:
     part = draw_part(1, Truth.OK, Recipe())
-    from dataclasses import replace
-
     part = replace(part, holes=(Hole(0.0, 0.0, 1.0, 0.3, 0.0, 3, 2),))
-    mask = hole_mask(part, THETA, contour(part, THETA).center_mm, part.half_width_mm, 96)
+    mask = hole_mask(part, THETA, contour(part, THETA), 96)
     assert mask[:40].any()
     assert mask[-40:].any()
     assert not mask[1000:3000].any()
@@ -78,8 +84,12 @@ def test_no_bead_where_the_weld_is_missing() -> None:
     assert line.present.any()
 
 
-def test_meshes_face_the_camera() -> None:
-    for mesh in part_meshes(draw_part(2, Truth.HOLE, Recipe())).values():
+@pytest.mark.parametrize("flat", [True, False])
+def test_meshes_face_the_camera(flat: bool, model: WeldModel) -> None:
+    part = replace(draw_part(2, Truth.HOLE, WIDE, flat=flat), spatter=6, fibres=2, crater_mm=0.0, overlap_mm=0.0)
+    meshes = part_meshes(part, model)
+    assert set(meshes) == {"bead", "plate", "floor", "fibre"}
+    for mesh in meshes.values():
         corner = mesh.vertices[mesh.faces].astype(np.float64)
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
         assert (normal[:, 2] >= -1e-9).mean() > 0.999
@@ -93,3 +103,45 @@ def test_labels_of_a_window_are_those_of_the_frame_moved() -> None:
     assert np.subtract(whole["center"], window["center"]) == pytest.approx([1000, 400])
     assert whole["defects"][0]["angle_deg"] == window["defects"][0]["angle_deg"]
     assert np.subtract(whole["defects"][0]["bbox_px"], window["defects"][0]["bbox_px"]) == pytest.approx([1000, 400, 1000, 400])
+
+
+def test_a_part_shows_holes_and_missing_welds_together() -> None:
+    hole, arc = (
+        Hole(40.0, 0.0, 0.6, 0.3, 0.2, 3, 2),
+        next(p.missing for s in range(99) if (p := draw_part(s, Truth.MISSING_WELD, Recipe())).missing[0].end_deg < 360),
+    )
+    part = draw_part(1, Truth.OK, Recipe(), defects=((hole,), arc))
+    assert part.holes == (hole,)
+    assert part.missing == arc
+    assert part.truth is Truth.MISSING_WELD
+
+
+@pytest.mark.parametrize("bits", range(256))
+def test_each_of_the_256_combinations_gives_a_weld(bits: int, model: WeldModel) -> None:
+    on = frozenset(s for i, s in enumerate(Switch) if bits >> i & 1)
+    part = draw_part(7, Truth.OK, PAPER, on, flat=True)
+    theta, t = angles(part), np.linspace(-1, 1, 24)
+    z = relief(part, theta, t, model)
+    assert np.isfinite(z).all()
+    assert (z.std(axis=0).max() < 1e-9) == (not on & {Switch.TOPOGRAPHY, Switch.PERLIN})
+    assert (abs(z[:, 0].mean()) < 0.5 * part.crown_mm) == (Switch.REDUCED_EDGES in on)
+    assert (np.ptp(contour(part, theta).outer_mm) > 1e-6) == (Switch.RANDOM_CONTOUR in on)
+
+
+def test_perlin_noise_is_periodic_and_even() -> None:
+    from synth.noise import perlin
+
+    field = perlin(np.random.default_rng(0), (240, 160), (12, 8))
+    assert np.abs(field).max() <= 1.01
+    assert abs(field.mean()) < 0.1
+    assert np.abs(field[0] - field[-1]).max() < 3 * np.abs(np.diff(field, axis=0)).max()
+    assert np.abs(field[:, 0] - field[:, -1]).max() < 3 * np.abs(np.diff(field, axis=1)).max()
+    assert field[::20, ::20] == pytest.approx(0)  # zero at the nodes, as gradient noise is
+
+
+def test_the_weld_runs_twice_over_its_overlap() -> None:
+    part = replace(draw_part(1, Truth.OK, Recipe()), overlap_mm=3.0, start_deg=0.0, direction=1)
+    weight = overlap_weight(part, THETA)
+    assert weight.sum() * (THETA[1] * part.radius_mm) == pytest.approx(3.0, rel=0.05)
+    assert weight[:1000].max() < 0.51
+    assert ALL == part.switches

@@ -1,0 +1,138 @@
+"""Crops per second of the generator beside a plain Mitsuba script of the same picture, in turns in the same minute. `make bench`."""
+
+import argparse
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import mitsuba as mi
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from synth.dataset import Order, workers, write_dataset
+from synth.errors import SynthError
+from synth.measurement import SHIPPED, read_measurement
+from synth.mesh import part_meshes
+from synth.optics import Optics
+from synth.part import Part
+from synth.picture import flat_crops, flat_window
+from synth.plan import FLAT_PER_SHARD, Shard, plan_flat, quotas
+from synth.recipe import PAPER, WIDE
+from synth.render import start
+from synth.scene import flat_scene
+from synth.spectrum import WeldModel, derive
+from synth.switches import ALL
+
+SAMPLES = 64
+"""Of the plain script: two emitter samples each, so that its noise is that of the generator's 4 rays with all emitters."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Time both in turns and print medians and their ratio, then where the generator's time goes."""
+    parser = argparse.ArgumentParser(prog="bench_render", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=3, help="how often each is timed (default: %(default)s)")
+    arguments = parser.parse_args(argv)
+    if arguments.rounds < 1:
+        parser.error("--rounds must be at least 1")
+    try:
+        run(arguments.rounds)
+    except SynthError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def run(rounds: int) -> None:
+    """Flat crops and arcs with two workers, beside the plain script with all threads."""
+    model, optics = derive(read_measurement(SHIPPED)), Optics()
+    start()
+    shards = plan_flat(5, quotas(12, (0.5, 0.25, 0.25)), PAPER, ALL)
+    plain(shards[0].parts[0], model, optics)
+    seconds: dict[str, list[float]] = {"plain script": [], "generator, flat": [], "generator, arcs": []}
+    with workers(2) as pool, tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
+        warm = [Order(1, 48, PAPER, ALL, flat=True), Order(1, 42, WIDE, ALL)]
+        for order in warm:
+            write_dataset(Path(folder) / f"warm{order.flat}", order, model, pool, lambda n: None)
+        for i in range(rounds):
+            seconds["plain script"].append(_timed(lambda: [plain(p, model, optics) for p in shards[0].parts]) / 12)
+            for name, recipe, flat in (("generator, flat", PAPER, True), ("generator, arcs", WIDE, False)):
+                order, out = Order(9 + i, 240, recipe, ALL, flat), Path(folder) / f"{flat}{i}"
+                seconds[name].append(_timed(lambda order=order, out=out: write_dataset(out, order, model, pool, lambda n: None)) / 240)  # type: ignore[misc]
+    table = Table("", "crops per s, median", "ms a crop", "5000 crops, min", "times the plain script")
+    base = float(np.median(seconds["plain script"]))
+    for name, values in seconds.items():
+        each = float(np.median(values))
+        table.add_row(name, f"{1 / each:.1f}", f"{each * 1000:.1f}", f"{each * 5000 / 60:.1f}", f"{base / each:.1f}")
+    Console().print(table)
+    _noise(shards[0], model, optics)
+    _parts_of_the_time(model, optics)
+
+
+def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
+    """One flat crop the plain way: one scene, Mitsuba's spots and direct integrator, one call."""
+    from synth.render import mitsuba_scene
+
+    scene = flat_scene([part], model)
+    world: dict[str, Any] = {"type": "scene", "integrator": {"type": "direct", "emitter_samples": 2, "bsdf_samples": 0}}
+    world |= {f"shape_{i}": shape for i, shape in enumerate(mitsuba_scene(scene).shapes())}
+    for i, (at, value) in enumerate(zip(scene.lights[0].positions_mm, scene.lights[0].intensity, strict=True)):
+        world[f"light_{i}"] = {
+            "type": "spot",
+            "to_world": mi.ScalarTransform4f().look_at(origin=at.tolist(), target=[at[0], at[1], 0.0], up=[0, 1, 0]),
+            "intensity": {"type": "uniform", "value": float(value)},
+            "cutoff_angle": 35.0,
+            "beam_width": 2.0,
+        }
+    field = float(2 * np.rad2deg(np.arctan(optics.width_px * optics.pixel_mm / 2 / optics.distance_mm)))
+    crop = dict(zip(("crop_offset_x", "crop_offset_y", "crop_width", "crop_height"), flat_window(optics), strict=True))
+    film = {"type": "hdrfilm", "width": optics.width_px, "height": optics.height_px, "pixel_format": "luminance", **crop}
+    view = mi.ScalarTransform4f().look_at(origin=[0, 0, optics.distance_mm], target=[0, 0, 0], up=[0, 1, 0])
+    sensor = mi.load_dict(
+        {"type": "perspective", "fov": field, "fov_axis": "x", "to_world": view, "film": {**film, "rfilter": {"type": "box"}}}
+    )
+    return np.asarray(mi.render(mi.load_dict(world), sensor=sensor, spp=SAMPLES, seed=mi.UInt32(part.seed & 0xFFFF)))
+
+
+def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
+    """Noise of both renders of the same crop, as a share of the signal: the quality that is compared."""
+    from dataclasses import replace
+
+    from synth.render import render
+    from synth.scene import window_pixels
+
+    part = shard.parts[0]
+    pairs = [np.stack([plain(replace(part, seed=part.seed), model, optics).reshape(128, 128)])]
+    scene = flat_scene([part], model)
+    pixels = window_pixels(*flat_window(optics))
+    fine = render(scene, optics, pixels, 64).radiance.reshape(128, 128)
+    rough = render(scene, optics, pixels).radiance.reshape(128, 128)
+    scale = float(np.median(pairs[0][0] / fine))
+    shares = [float(np.sqrt(np.mean((image - fine) ** 2)) / fine.mean()) for image in (pairs[0][0] / scale, rough)]
+    Console().print(f"error against 64 rays a pixel with all emitters: plain script {shares[0]:.1%}, generator {shares[1]:.1%}")
+
+
+def _parts_of_the_time(model: WeldModel, optics: Optics) -> None:
+    """Where the generator's time goes, one process with all threads."""
+    (shard,) = plan_flat(6, quotas(FLAT_PER_SHARD, (0.5, 0.25, 0.25)), PAPER, ALL)
+    flat_crops(shard.parts, model, optics)
+    whole = _timed(lambda: flat_crops(shard.parts, model, optics))
+    meshes = _timed(lambda: [part_meshes(p, model) for p in shard.parts])
+    scene = _timed(lambda: flat_scene(shard.parts, model))
+    Console().print(
+        f"of {whole / FLAT_PER_SHARD * 1000:.0f} ms a flat crop in one process: relief and meshes {meshes / whole:.0%}, "
+        f"textures {max(0.0, scene - meshes) / whole:.0%}, tree, rays and light, sensor {(whole - scene) / whole:.0%}"
+    )
+
+
+def _timed(work: Callable[[], object]) -> float:
+    begun = time.perf_counter()
+    work()
+    return time.perf_counter() - begun
+
+
+if __name__ == "__main__":
+    sys.exit(main())

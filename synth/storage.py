@@ -1,0 +1,55 @@
+"""Files that are whole or absent: written beside, then renamed."""
+
+import json
+import os
+from pathlib import Path
+
+import cv2
+from numpy.typing import NDArray
+
+from synth.errors import SynthError
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file. Raises SynthError saying why it could not be."""
+    part = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(content)
+        os.replace(part, path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise SynthError(f"{path}: could not be written: {error.strerror or error}") from None
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, UTF-8."""
+    write_bytes(path, text.encode())
+
+
+def write_image(path: Path, image: NDArray) -> None:  # type: ignore[type-arg]
+    """Write an image in the format of the path's suffix."""
+    write_bytes(path, encode(path.suffix, image))
+
+
+def encode(suffix: str, image: NDArray) -> bytes:  # type: ignore[type-arg]
+    """Bytes of an image file."""
+    good, content = cv2.imencode(suffix, image, [cv2.IMWRITE_PNG_COMPRESSION, 3] if suffix == ".png" else [])
+    if not good:
+        raise SynthError(f"an image of shape {image.shape} could not be encoded as {suffix}")
+    return bytes(content)
+
+
+def claim(path: Path, manifest: dict[str, object]) -> None:
+    """Write what a folder holds, or check that it holds the same. Raises SynthError if it does not."""
+    wanted = json.loads(json.dumps(manifest))
+    if not path.exists():
+        write_text(path, json.dumps(wanted, indent=1))
+        return
+    try:
+        held = json.loads(path.read_text())
+    except (OSError, ValueError):
+        raise SynthError(f"{path}: not readable; name an empty folder with --out") from None
+    differing = sorted(key for key in wanted if held.get(key) != wanted[key])
+    if differing:
+        raise SynthError(f"{path.parent}: was begun with another {', '.join(differing)}; name an empty folder with --out")
