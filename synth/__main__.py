@@ -57,6 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     part.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the lot; a killed run goes on where it stopped")
     part.add_argument("--count", type=int, default=1, help="number of parts (default: %(default)s)")
     part.add_argument("--ring-only", action="store_true", help="only the window round the ring: faster, enough for training")
+    part.add_argument("--strips", action="store_true", help="unwrapped strips too, and masks of frames and strips")
     _recipe_options(part, "line", "--mix")
     part.set_defaults(command=_part)
 
@@ -146,6 +147,7 @@ def _part(arguments: argparse.Namespace) -> None:
             switches,
             model,
             not arguments.ring_only,
+            arguments.strips,
             lambda: progress.advance(task),
         )
     print(f"{arguments.count} parts in {arguments.out}")

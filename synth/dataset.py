@@ -12,6 +12,7 @@ DIR/shards/NNNNN.json                one per finished shard: written last, so th
 import json
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -101,6 +102,7 @@ def _begin(threads: int) -> None:
 
     from synth.render import start
 
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to answer
     cv2.setNumThreads(threads)
     start(threads)
 

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from skimage.draw import polygon
 from skimage.measure import CircleModel
 
+from station.domain import STRIP_COLUMNS, STRIP_ROWS, Ring
+from station.vision.unwrap import frame_to_strip
 from synth.contour import contour
 from synth.defects import outline
 from synth.mesh import angles
@@ -73,6 +75,19 @@ def mask(points: Array, width: int, height: int) -> NDArray[np.bool_]:
     image = np.zeros((height, width), bool)
     image[polygon(points[:, 1], points[:, 0], image.shape)] = True  # type: ignore[no-untyped-call]
     return image
+
+
+def strip_mask(outline: Outline, ring: Ring, origin_px: tuple[int, int]) -> NDArray[np.bool_]:
+    """Mask (128, 2688) of an opening on the strip, across the seam too."""
+    points = frame_to_strip(ring, outline.points - origin_px)
+    points[:, 0] = np.unwrap(points[:, 0], period=STRIP_COLUMNS)
+    if outline.end_deg - outline.start_deg >= 360:
+        half = len(points) // 2
+        points[half:, 0] += STRIP_COLUMNS * np.round((points[half - 1, 0] - points[half, 0]) / STRIP_COLUMNS)
+    found = np.zeros((STRIP_ROWS, STRIP_COLUMNS), bool)
+    for turn in range(-2, 3):
+        found |= mask(points + np.array([turn * STRIP_COLUMNS, 0]), STRIP_COLUMNS, STRIP_ROWS)
+    return found
 
 
 def label(part: Part, optics: Optics, name: str, origin_px: tuple[int, int], size_px: tuple[int, int]) -> dict[str, Any]:

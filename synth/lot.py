@@ -11,9 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from synth.labels import label
+from station.domain import STRIP_COLUMNS, STRIP_ROWS, Ring
+from station.vision.unwrap import unwrap
+from synth.labels import label, mask, outlines, ring_px, strip_mask
 from synth.optics import Optics
-from synth.part import Truth, draw_part
+from synth.part import Part, Truth, draw_part
+from synth.picture import Image, Window, picture, ring_window
 from synth.recipe import Recipe
 from synth.spectrum import WeldModel
 from synth.storage import claim, write_image, write_text
@@ -43,14 +46,14 @@ def write_lot(
     switches: frozenset[Switch],
     model: WeldModel,
     whole: bool,
+    strips: bool,
     done: Callable[[], None],
 ) -> None:
-    """Render `count` parts into `out`; whole frames or windows round the ring. `done` is called after each part.
+    """Render `count` parts into `out`; whole frames or windows round the ring; with `strips`, the unwrapped
+    strips and the masks of frames and strips as well. `done` is called after each part.
 
     Raises SynthError if `out` holds a lot of another seed or recipe.
     """
-    from synth.picture import picture, ring_window
-
     optics = Optics()
     frames = out / "frames"
     frames.mkdir(parents=True, exist_ok=True)
@@ -70,8 +73,25 @@ def write_lot(
         if not side.exists():
             part = draw_part(part_seed, truth, recipe, switches)
             window = (0, 0, optics.width_px, optics.height_px) if whole else ring_window(part, optics)
-            write_image(frames / name, picture(part, model, optics, window))
+            image = picture(part, model, optics, window)
+            if strips:
+                _write_strips(out, name, part, optics, image, window)
+            write_image(frames / name, image)
             write_text(side, json.dumps(label(part, optics, name, window[:2], window[2:])))
         labels.append(json.loads(side.read_text()))
         done()
     write_text(out / "labels.json", json.dumps({**manifest, "frames": labels}, indent=1))
+
+
+def _write_strips(out: Path, name: str, part: Part, optics: Optics, image: Image, window: Window) -> None:
+    """strips/ as the station unwraps them from the true ring; masks/ and strip_masks/: 255 where a defect is."""
+    left, top, width, height = window
+    x, y, radius = ring_px(part, optics)
+    ring = Ring(x - left, y - top, radius, 1.0)
+    in_frame, in_strip = np.zeros((height, width), bool), np.zeros((STRIP_ROWS, STRIP_COLUMNS), bool)
+    for opening in outlines(part, optics):
+        in_frame |= mask(opening.points - (left, top), width, height)
+        in_strip |= strip_mask(opening, ring, (left, top))
+    write_image(out / "masks" / name, in_frame.astype(np.uint8) * 255)
+    write_image(out / "strips" / name, unwrap(image, ring))
+    write_image(out / "strip_masks" / name, in_strip.astype(np.uint8) * 255)

@@ -1,4 +1,7 @@
-"""Rendered parts as camera pictures: whole frames, windows, the band round the weld, and flat crops."""
+"""Rendered parts as camera pictures: whole frames, windows, the band round the weld, and flat crops.
+
+The renderer is loaded when the first picture is asked for: planning and reading need none.
+"""
 
 from collections.abc import Sequence
 
@@ -9,7 +12,6 @@ from station.domain import STRIP_ROWS
 from synth.labels import ring_px
 from synth.optics import Optics
 from synth.part import Part
-from synth.render import SAMPLES, Rendering, render
 from synth.scene import Pixels, flat_scene, join_pixels, part_scene, window_pixels
 from synth.sensor import expose
 from synth.spectrum import WeldModel
@@ -39,6 +41,8 @@ def ring_window(part: Part, optics: Optics) -> Window:
 
 def picture(part: Part, model: WeldModel, optics: Optics, window: Window | None = None) -> Image:
     """Camera picture (H, W) uint8 of a window, by default the whole frame. Away from the weld one ray a pixel is enough."""
+    from synth.render import SAMPLES, render
+
     x, y, width, height = window or (0, 0, optics.width_px, optics.height_px)
     scene = part_scene(part, model)
     pixels = window_pixels(x, y, width, height)
@@ -52,6 +56,8 @@ def picture(part: Part, model: WeldModel, optics: Optics, window: Window | None 
 
 def band(part: Part, model: WeldModel, optics: Optics) -> tuple[Image, Map, Window]:
     """Camera picture of the window round the ring, rendered in the band that the crops show and black elsewhere; heights in mm."""
+    from synth.render import render
+
     window = ring_window(part, optics)
     x, y, width, height = window
     pixels = window_pixels(x, y, width, height)
@@ -64,9 +70,11 @@ def band(part: Part, model: WeldModel, optics: Optics) -> tuple[Image, Map, Wind
 
 def flat_crops(parts: Sequence[Part], model: WeldModel, optics: Optics) -> tuple[list[Image], Map, Map]:
     """Flat crops (128, 128) uint8 of parts drawn flat; their heights in mm and floor shares, (K, 128, 128)."""
+    from synth.render import render
+
     x, y, side, _ = flat_window(optics)
     pixels = [window_pixels(x - MARGIN_PX, y - MARGIN_PX, side + 2 * MARGIN_PX, side + 2 * MARGIN_PX, i) for i in range(len(parts))]
-    seen: Rendering = render(flat_scene(parts, model), optics, join_pixels(pixels))
+    seen = render(flat_scene(parts, model), optics, join_pixels(pixels))
     shape = (len(parts), side + 2 * MARGIN_PX, side + 2 * MARGIN_PX)
     inner = slice(MARGIN_PX, MARGIN_PX + side)
     radiance = seen.radiance.reshape(shape)

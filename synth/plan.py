@@ -16,6 +16,10 @@ VAL_EVERY = 7
 """Every seventh shard is for validation: no part has crops on both sides."""
 MIN_OVERLAP = 0.2
 """A crop shows a defect if it covers this share of the smaller of the two; a crop that is touched by less is not used."""
+RING_ERROR_PX = 3.0
+"""Largest error of the ring's centre and radius that arcs are cut with: the station's own is smaller."""
+RING_ERROR_DEG = 0.7
+"""What it moves a crop along the ring: crops whose kind that would change are not used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +93,10 @@ def plan_arcs(seed: int, wanted: dict[str, int], recipe: Recipe, switches: froze
         part = _ring(seed * 10_000_000 + index, rng, recipe, switches, left)
         crops = []
         for segment in rng.permutation(SEGMENTS):
-            kind = crop_kind(part, int(segment) * 360 / SEGMENTS, (int(segment) + 1) * 360 / SEGMENTS)
-            if kind is not None and left[kind] > 0:
+            start_deg, end_deg = int(segment) * 360 / SEGMENTS, (int(segment) + 1) * 360 / SEGMENTS
+            kind = crop_kind(part, start_deg, end_deg)
+            sure = {crop_kind(part, start_deg - d, end_deg + d) for d in (-RING_ERROR_DEG, RING_ERROR_DEG)} == {kind}
+            if kind is not None and sure and left[kind] > 0:
                 left[kind] -= 1
                 crops.append(Crop(number, kind, int(segment)))
                 number += 1

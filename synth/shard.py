@@ -9,18 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from station.domain import SEGMENT_PX, SEGMENTS, Ring
-from station.vision.unwrap import frame_to_strip, segments, strip_to_frame, unwrap
-from synth.labels import Outline, mask, outlines, ring_px
+from station.vision.unwrap import segments, strip_to_frame, unwrap
+from synth.labels import Outline, mask, outlines, ring_px, strip_mask
 from synth.optics import Optics
 from synth.picture import CROP_PX, band, flat_crops, flat_window
-from synth.plan import HOLE, MISSING, Crop, Shard
+from synth.plan import HOLE, MISSING, RING_ERROR_PX, Crop, Shard
 from synth.spectrum import WeldModel
 from synth.storage import encode
 
 DETECTED = (HOLE, MISSING)
 """Classes of the detection labels, in order."""
-RING_ERROR_PX = 3.0
-"""Largest error of the ring's centre and radius that the crops are cut with: the station's own is smaller."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,27 +92,13 @@ def _arcs(shard: Shard, model: WeldModel, optics: Optics) -> list[Shot]:
     crops = segments(unwrap(image, ring))
     shape = (SEGMENTS, SEGMENT_PX, SEGMENT_PX)
     heights = _unwrap_map(height_mm, ring).reshape(SEGMENT_PX, SEGMENTS, SEGMENT_PX).transpose(1, 0, 2).reshape(shape)
-    masks = [(o, _strip_mask(o, ring, window[:2])) for o in outlines(part, optics)]
+    masks = [(o, strip_mask(o, ring, window[:2])) for o in outlines(part, optics)]
     shots: list[Shot] = []
     for crop in shard.crops:
         columns = slice(crop.place * SEGMENT_PX, (crop.place + 1) * SEGMENT_PX)
         found = [(o, m[:, columns]) for o, m in masks if m[:, columns].any()]
         shots.append((crop, crops[crop.place], heights[crop.place], found))
     return shots
-
-
-def _strip_mask(outline: Outline, ring: Ring, origin_px: tuple[int, int]) -> NDArray[np.bool_]:
-    """Mask (128, 2688) of an opening on the strip, across the seam too."""
-    points = frame_to_strip(ring, outline.points - origin_px)
-    columns = SEGMENTS * SEGMENT_PX
-    points[:, 0] = np.unwrap(points[:, 0], period=columns)
-    if outline.end_deg - outline.start_deg >= 360:
-        half = len(points) // 2
-        points[half:, 0] += columns * np.round((points[half - 1, 0] - points[half, 0]) / columns)
-    found = np.zeros((SEGMENT_PX, columns), bool)
-    for turn in range(-2, 3):
-        found |= mask(points + np.array([turn * columns, 0]), columns, SEGMENT_PX)
-    return found
 
 
 def _unwrap_map(values: NDArray[np.float32], ring: Ring) -> NDArray[np.float32]:

@@ -119,6 +119,9 @@ def test_same_seed_same_bytes_on_one_and_two_workers_and_a_cluster(flat: bool, t
     with workers(2) as pool:
         write_dataset(tmp_path / "two", order(count, flat), model, pool, lambda n: None)
     assert tree(tmp_path / "here") == tree(tmp_path / "two")
+    for entry in json.loads((tmp_path / "here" / "manifest.json").read_text())["images"]:
+        assert bool(entry["defects"]) == (entry["kind"] != "ok")
+        assert (entry["segment"] is None) == flat
 
 
 @pytest.mark.render

@@ -129,13 +129,18 @@ def test_same_part_same_picture_wherever_it_is_rendered(model: WeldModel) -> Non
 
 
 def test_a_killed_lot_goes_on_and_another_seed_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    command = ["part", "--out", str(tmp_path), "--ring-only", "--seed", "5"]
+    command = ["part", "--out", str(tmp_path), "--ring-only", "--seed", "5", "--strips"]
     assert main([*command, "--count", "1"]) == 0
     (first,) = (tmp_path / "frames").glob("*.png")
     stamp = first.stat().st_mtime_ns
     assert main([*command, "--count", "2"]) == 0
     assert first.stat().st_mtime_ns == stamp
     assert len(json.loads((tmp_path / "labels.json").read_text())["frames"]) == 2
+    for name in ("strips", "strip_masks"):
+        assert cv2.imread(str(tmp_path / name / first.name), cv2.IMREAD_UNCHANGED).shape == (128, 2688)
+    marked = cv2.imread(str(tmp_path / "masks" / first.name), cv2.IMREAD_UNCHANGED)
+    label = json.loads((tmp_path / "labels.json").read_text())["frames"][0]
+    assert marked.any() == bool(label["defects"])
     assert main(["part", "--out", str(tmp_path), "--ring-only", "--seed", "6"]) == 2
     assert "another seed" in capsys.readouterr().err
 
