@@ -154,8 +154,6 @@ def _sample(
     angle = (np.arange(SECTORS) + 0.5) * (2 * np.pi / SECTORS)
     along, across = -dx * np.cos(angle) - dy * np.sin(angle), dx * np.sin(angle) - dy * np.cos(angle)
     offset = along + np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - (radius + dr)
-    if rng.random() < 0.5:  # inside out: which partner lies inside says nothing of where the weld is
-        band, offset = np.ascontiguousarray(band[::-1]), -offset
     return _relight(band, rng), offset.astype(np.float32), there
 
 
