@@ -22,8 +22,8 @@ from synth.part import Part
 from synth.picture import flat_crops, flat_window
 from synth.plan import FLAT_PER_SHARD, Shard, plan_flat, quotas
 from synth.recipe import PAPER, WIDE
-from synth.render import start
-from synth.scene import flat_scene
+from synth.render import mitsuba_scene, render, start
+from synth.scene import flat_scene, window_pixels
 from synth.spectrum import WeldModel, derive
 from synth.switches import ALL
 
@@ -74,8 +74,6 @@ def run(rounds: int) -> None:
 
 def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
     """One flat crop the plain way: one scene, Mitsuba's spots and direct integrator, one call."""
-    from synth.render import mitsuba_scene
-
     scene = flat_scene([part], model)
     world: dict[str, Any] = {"type": "scene", "integrator": {"type": "direct", "emitter_samples": 2, "bsdf_samples": 0}}
     world |= {f"shape_{i}": shape for i, shape in enumerate(mitsuba_scene(scene).shapes())}
@@ -99,19 +97,14 @@ def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
 
 def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
     """Noise of both renders of the same crop, as a share of the signal: the quality that is compared."""
-    from dataclasses import replace
-
-    from synth.render import render
-    from synth.scene import window_pixels
-
     part = shard.parts[0]
-    pairs = [np.stack([plain(replace(part, seed=part.seed), model, optics).reshape(128, 128)])]
+    theirs = plain(part, model, optics).reshape(128, 128)
     scene = flat_scene([part], model)
     pixels = window_pixels(*flat_window(optics))
     fine = render(scene, optics, pixels, 64).radiance.reshape(128, 128)
     rough = render(scene, optics, pixels).radiance.reshape(128, 128)
-    scale = float(np.median(pairs[0][0] / fine))
-    shares = [float(np.sqrt(np.mean((image - fine) ** 2)) / fine.mean()) for image in (pairs[0][0] / scale, rough)]
+    scale = float(np.median(theirs / fine))
+    shares = [float(np.sqrt(np.mean((image - fine) ** 2)) / fine.mean()) for image in (theirs / scale, rough)]
     Console().print(f"error against 64 rays a pixel with all emitters: plain script {shares[0]:.1%}, generator {shares[1]:.1%}")
 
 

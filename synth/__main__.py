@@ -51,6 +51,7 @@ def _parser() -> argparse.ArgumentParser:
     dataset.add_argument("--workers", type=int, default=os.cpu_count() or 1, metavar="N", help="processes (default: %(default)s)")
     dataset.add_argument("--scheduler", metavar="ADDRESS", help="send the work to a Dask cluster, as tcp://host:8786")
     _recipe_options(dataset, "wide")
+    _off_option(dataset)
     dataset.set_defaults(command=_dataset)
 
     part = commands.add_parser("part", help="render parts as camera frames", description="Render parts with labels.")
@@ -59,6 +60,7 @@ def _parser() -> argparse.ArgumentParser:
     part.add_argument("--ring-only", action="store_true", help="only the window round the ring: faster, enough for training")
     part.add_argument("--strips", action="store_true", help="unwrapped strips too, and masks of frames and strips")
     _recipe_options(part, "line", "--mix")
+    _off_option(part)
     part.set_defaults(command=_part)
 
     sheet = commands.add_parser("sheet", help="contact sheet of a dataset, or of the switches")
@@ -81,6 +83,7 @@ def _parser() -> argparse.ArgumentParser:
     calibrate.add_argument("--figure", type=Path, metavar="PNG", help="where the figure goes")
     calibrate.add_argument("--out", type=Path, metavar="TOML", help="where the recipe entry goes")
     _recipe_options(calibrate, "paper")
+    _off_option(calibrate)
     calibrate.set_defaults(command=_calibrate)
     return parser
 
@@ -89,11 +92,14 @@ def _recipe_options(parser: argparse.ArgumentParser, default: str, *other: str) 
     parser.add_argument("--seed", type=int, default=0, help="same seed, same bytes (default: %(default)s)")
     parser.add_argument("--base", *other, dest="base", choices=sorted(RECIPES), default=default, help="recipe (default: %(default)s)")
     parser.add_argument("--recipe", type=Path, metavar="FILE", help="TOML with what differs from it")
+    parser.add_argument("--measurement", type=Path, metavar="FILE", help="3D measurement of an OK weld (default: the shipped one)")
+    parser.add_argument("--step-um", type=float, metavar="UM", help="step of an npy measurement")
+
+
+def _off_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--off", nargs="+", default=[], metavar="NAME", help=f"switch off: {', '.join(Switch)}; the paper's section 3.4 (default: all on)"
     )
-    parser.add_argument("--measurement", type=Path, metavar="FILE", help="3D measurement of an OK weld (default: the shipped one)")
-    parser.add_argument("--step-um", type=float, metavar="UM", help="step of an npy measurement")
 
 
 def _checked(arguments: argparse.Namespace) -> tuple[Recipe, frozenset[Switch], "WeldModel"]:
@@ -104,7 +110,7 @@ def _checked(arguments: argparse.Namespace) -> tuple[Recipe, frozenset[Switch], 
     recipe = RECIPES[arguments.base]
     if arguments.recipe is not None:
         recipe = read_recipe(arguments.recipe, recipe)
-    switches = without(arguments.off)
+    switches = without(getattr(arguments, "off", []))
     from synth.measurement import SHIPPED, read_measurement
     from synth.spectrum import derive
 
@@ -191,11 +197,11 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     from synth.figures import calibration_figure
     from synth.storage import write_text
 
-    recipe, _, model = _checked(arguments)
+    recipe, switches, model = _checked(arguments)
     crops = read_crops(arguments.images)
     with _progress() as progress:
         task = progress.add_task("rendering", total=ALPHAS.size)
-        found = calibrate(crops, recipe, model, arguments.seed, arguments.renders, lambda: progress.advance(task))
+        found = calibrate(crops, recipe, switches, model, arguments.seed, arguments.renders, lambda: progress.advance(task))
     entry = f"alpha_weld = [{found.alpha_weld}, {found.alpha_weld}]\nalpha_partner = [{found.alpha_partner}, {found.alpha_partner}]\n"
     print(entry, end="")
     if arguments.figure is not None:

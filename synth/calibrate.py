@@ -14,7 +14,7 @@ from synth.picture import CROP_PX, flat_crops
 from synth.plan import OK, plan_flat
 from synth.recipe import Recipe
 from synth.spectrum import WeldModel
-from synth.switches import ALL
+from synth.switches import Switch
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -52,7 +52,13 @@ class Calibration:
 
 
 def calibrate(
-    images: Sequence[Image], recipe: Recipe, model: WeldModel, seed: int, renders: int = RENDERS, done: Callable[[], None] = lambda: None
+    images: Sequence[Image],
+    recipe: Recipe,
+    switches: frozenset[Switch],
+    model: WeldModel,
+    seed: int,
+    renders: int = RENDERS,
+    done: Callable[[], None] = lambda: None,
 ) -> Calibration:
     """Compare crops (K, 128, 128) uint8 of OK welds with renders over the grid of alphas.
 
@@ -63,7 +69,7 @@ def calibrate(
     weld_rows, partner_rows = regions(recipe)
     given = [_histogram(images, rows) for rows in (weld_rows, partner_rows)]
     distance = np.zeros((2, ALPHAS.size))
-    parts = [p for shard in plan_flat(seed, {OK: renders}, recipe, ALL) for p in shard.parts]
+    parts = [p for shard in plan_flat(seed, {OK: renders}, recipe, switches) for p in shard.parts]
     for i, alpha in enumerate(ALPHAS):
         rough = [replace(p, alpha_weld=float(alpha), alpha_partner=float(alpha)) for p in parts]
         crops, _, _ = flat_crops(rough, model, Optics())

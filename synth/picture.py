@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from station.domain import STRIP_ROWS
+from station.domain import SEGMENT_PX, STRIP_ROWS
 from synth.labels import ring_px
 from synth.optics import Optics
 from synth.part import Part
@@ -25,7 +25,7 @@ RING_WINDOW_PX = 1120
 """Side of the window that holds the ring with its strip."""
 BAND_PX = STRIP_ROWS / 2 + 16
 """Half the width of the band round the weld's centre line that its crops can show, with room for a moved ring and the blur."""
-CROP_PX = 128
+CROP_PX = SEGMENT_PX
 MARGIN_PX = 8
 """Rendered round a flat crop for the blur."""
 

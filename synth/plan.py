@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from station.domain import SEGMENTS
 from synth.errors import SynthError
 from synth.part import Hole, MissingWeld, Part, Truth, draw_hole, draw_part
 from synth.recipe import Recipe
 from synth.switches import Switch
 
 OK, HOLE, MISSING = KINDS = ("ok", "hole", "missing_weld")
-SEGMENTS = 21
 FLAT_PER_SHARD = 24
 VAL_EVERY = 7
 """Every seventh shard is for validation: no part has crops on both sides."""
@@ -74,7 +74,7 @@ def _flat_part(seed: int, kind: str, recipe: Recipe, switches: frozenset[Switch]
     holes: tuple[Hole, ...] = ()
     missing: tuple[MissingWeld, ...] = ()
     if kind == HOLE:
-        count = max(1, int(rng.integers(1, 3)))
+        count = int(rng.integers(1, 3))
         holes = tuple(draw_hole(rng, recipe, part.half_width_mm, float(rng.uniform(-6.5, 6.5))) for _ in range(count))
     elif kind == MISSING:
         edge = float(rng.uniform(-3, 8)) if rng.random() < 0.35 else 90.0

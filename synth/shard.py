@@ -42,7 +42,7 @@ class Made:
 def make(job: Job) -> Made:
     """Render a shard. Same job, same bytes, on any worker with the same variant of the renderer."""
     optics = Optics()
-    shots = _flat(job.shard, job.model, optics) if job.shard.parts[0].flat else _arcs(job.shard, job.model, optics)
+    shots = _flat(job.shard, job.model, optics) if job.shard.parts[0].flat else _arcs(job, optics)
     files: dict[str, bytes] = {}
     entries = []
     for crop, image, height_mm, defects in shots:
@@ -82,22 +82,21 @@ def _flat(shard: Shard, model: WeldModel, optics: Optics) -> list[Shot]:
     return shots
 
 
-def _arcs(shard: Shard, model: WeldModel, optics: Optics) -> list[Shot]:
+def _arcs(job: Job, optics: Optics) -> list[Shot]:
     """The ring's band, cut as the station cuts it, from a ring found with a small error."""
-    part = shard.parts[0]
-    image, height_mm, window = band(part, model, optics)
+    part = job.shard.parts[0]
+    image, height_mm, window = band(part, job.model, optics)
     x, y, radius = ring_px(part, optics)
     dx, dy, dr = np.random.default_rng([part.seed, 14]).uniform(-RING_ERROR_PX, RING_ERROR_PX, 3)
     ring = Ring(x - window[0] + float(dx), y - window[1] + float(dy), radius + float(dr), 1.0)
     crops = segments(unwrap(image, ring))
-    shape = (SEGMENTS, SEGMENT_PX, SEGMENT_PX)
-    heights = _unwrap_map(height_mm, ring).reshape(SEGMENT_PX, SEGMENTS, SEGMENT_PX).transpose(1, 0, 2).reshape(shape)
+    heights = _unwrap_map(height_mm, ring) if job.heights else np.zeros((SEGMENT_PX, SEGMENTS * SEGMENT_PX), np.float32)
     masks = [(o, strip_mask(o, ring, window[:2])) for o in outlines(part, optics)]
     shots: list[Shot] = []
-    for crop in shard.crops:
+    for crop in job.shard.crops:
         columns = slice(crop.place * SEGMENT_PX, (crop.place + 1) * SEGMENT_PX)
         found = [(o, m[:, columns]) for o, m in masks if m[:, columns].any()]
-        shots.append((crop, crops[crop.place], heights[crop.place], found))
+        shots.append((crop, crops[crop.place], heights[:, columns], found))
     return shots
 
 

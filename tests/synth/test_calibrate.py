@@ -22,7 +22,7 @@ def test_hidden_alphas_are_found_again(model: WeldModel) -> None:
     hidden = replace(PAPER, alpha_weld=(0.27, 0.27), alpha_partner=(0.13, 0.13))
     parts = [p for shard in plan_flat(91, {"ok": 24}, hidden, ALL) for p in shard.parts]
     images, _, _ = flat_crops(parts, model, Optics())
-    found = calibrate(images, PAPER, model, seed=4, renders=12)
+    found = calibrate(images, PAPER, ALL, model, seed=4, renders=12)
     assert found.alpha_weld == pytest.approx(0.27, abs=0.031)
     assert found.alpha_partner == pytest.approx(0.13, abs=0.031)
     assert np.unravel_index(found.pairs.argmin(), found.pairs.shape) == (

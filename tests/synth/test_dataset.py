@@ -16,10 +16,11 @@ from hypothesis import strategies as st
 
 from models.data import Defect, crop_label
 from station.classify.onnx import CLASSES
+from station.domain import SEGMENTS
 from synth.dataset import Order, workers, write_dataset
 from synth.errors import SynthError
 from synth.part import Hole, MissingWeld, Truth, draw_part
-from synth.plan import KINDS, SEGMENTS, crop_kind, plan_arcs, plan_flat, quotas
+from synth.plan import KINDS, crop_kind, plan_arcs, plan_flat, quotas
 from synth.recipe import PAPER, WIDE
 from synth.spectrum import WeldModel
 from synth.switches import ALL
