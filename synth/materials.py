@@ -129,19 +129,32 @@ def bead_surface(part: Part, length_mm: float) -> Surface:
     cell = (rows / (2 * part.half_width_mm), columns / length_mm)
     t = np.linspace(-1, 1, rows)[:, None]
     image = np.clip(part.bead_reflectance + 0.05 * gaussian(rng, shape, (0.19 * cell[0], 0.51 * cell[1])), 0, 1)
-    patches = gaussian(rng, shape, (0.31 * cell[0], 1.0 * cell[1])) + 0.5 * gaussian(rng, shape, (0.08 * cell[0], 0.12 * cell[1]))
+    sharp = 1.0 - part.soot_softness
+    patches = gaussian(rng, shape, (0.31 * cell[0], 1.0 * cell[1])) + (0.1 + 0.5 * sharp) * gaussian(
+        rng, shape, (0.08 * cell[0], 0.12 * cell[1])
+    )
     border = np.abs(t) ** 6 * np.clip(0.5 + 0.5 * gaussian(rng, shape, (rows, 1.4 * cell[1])), 0, 1)
     soot = np.zeros(shape)
     black = float(rng.uniform(0.45, 0.92))
     if Switch.SOOT_ON_WELD in part.switches:
         soot = np.maximum(
-            soot, np.clip(float(rng.uniform(0.5, 2.0)) * (patches - 2.2 + 2.4 * part.soot), 0, 1) * black * float(part.soot > 0)
+            soot,
+            np.clip((0.25 + float(rng.uniform(0.25, 2.0)) * sharp) * (patches - 2.2 + 2.4 * part.soot), 0, 1)
+            * black
+            * float(part.soot > 0),
         )
     if Switch.SOOT_AT_EDGES in part.switches:
         soot = np.maximum(soot, border * min(1.0, 1.2 * part.soot))
     reflectance = np.asarray(image, np.float32)
     _bead_scratches(part, reflectance)
     return Surface(reflectance, np.asarray(np.clip(soot, 0, 0.95), np.float32))
+
+
+def floor_reflectance(part: Part) -> Texture:
+    """Reflectance of what lies below holes and joint, seen from above as `plate_surface`, (H, W)."""
+    n = FLAT_TEXELS if part.flat else PLATE_TEXELS
+    field = _field(np.random.default_rng([part.seed, 15]), n, (0.1, 0.1), n / plate_mm(part))
+    return np.asarray(np.clip(part.floor_reflectance * np.exp(part.floor_texture * field), 0, 1), np.float32)
 
 
 def _bead_scratches(part: Part, image: Texture) -> None:

@@ -23,6 +23,8 @@ PLATE_MM = 24.0
 FLAT_MM = 2.4
 """The same of a flat crop; its weld is 2 mm long."""
 FLAT_LENGTH_MM = 2.0
+FLAT_SHARE = 0.15
+"""A flat crop's share of the droplets and fibres of a part: by length it would be a seventeenth, too few to tell droplets from holes."""
 FLOOR_MM = -0.45
 """Height of what lies below the joint."""
 
@@ -71,8 +73,9 @@ def part_meshes(part: Part, model: WeldModel) -> dict[str, Mesh]:
         meshes["bead"], height = _bead(part, theta, line, model)
     plates += _spatter(part, line, theta, height)
     meshes["plate"] = join(plates)
-    if part.fibres:
-        meshes["fibre"] = join(_fibres(part))
+    fibres = _fibres(part)
+    if fibres:
+        meshes["fibre"] = join(fibres)
     return meshes
 
 
@@ -110,11 +113,12 @@ def _plan_uv(part: Part, points: Array) -> Array:
 
 
 def _bead(part: Part, theta: Array, line: Contour, model: WeldModel) -> tuple[Mesh, Array]:
+    """The bead, and its height (N, M), NaN over holes."""
     t = np.linspace(-1.0, 1.0, ACROSS)
     z = relief(part, theta, t, model)
     hole = hole_mask(part, theta, line, ACROSS)
     if hole.any():
-        z = z - _rim_sink(hole)
+        z = z - _rim_sink(part, hole, theta)
     below, above = np.clip(-t, 0, 1)[:, None], np.clip(t, 0, 1)[:, None]
     radius = line.center_mm + above * (line.outer_mm - line.center_mm) + below * (line.inner_mm - line.center_mm)
     lift = np.clip((line.outer_mm - line.inner_mm) / part.half_width_mm, 0, 1)
@@ -126,21 +130,22 @@ def _bead(part: Part, theta: Array, line: Contour, model: WeldModel) -> tuple[Me
     u = (theta - theta[0]) / (np.ptp(theta) if part.flat else 2 * np.pi)
     uv = np.stack(np.broadcast_arrays(u[None, :], ((t + 1) / 2)[:, None]), axis=-1)
     keep = ~hole.T[:-1] & line.present[None, :] & np.roll(line.present, -1)[None, :]
-    return _mesh(part, points, normals, uv, keep), height
+    return _mesh(part, points, normals, uv, keep), np.where(hole.T, np.nan, height)
 
 
-def _rim_sink(hole: NDArray[np.bool_]) -> Array:
-    """The melt sinks towards a hole's edge: depth (M, N) in mm."""
+def _rim_sink(part: Part, hole: NDArray[np.bool_], theta: Array) -> Array:
+    """The melt sinks towards a hole's edge, or is heaped up to a lip round it: depth (M, N) in mm. Cells are nearly square."""
     wrapped = np.concatenate([hole[-64:], hole, hole[:64]])
     cells = cv2.distanceTransform((~wrapped).astype(np.uint8), cv2.DIST_L2, 3)[64:-64]
-    return 0.03 * np.exp(-cells.astype(np.float64) / 2.5)
+    away_mm = cells.astype(np.float64) * float(theta[1] - theta[0]) * part.radius_mm
+    return part.hole_rim_mm * np.exp(-(((away_mm - part.hole_crest_mm) / part.hole_rim_width_mm) ** 2))
 
 
 def _spatter(part: Part, line: Contour, theta: Array, height: Array | None) -> list[Mesh]:
-    """Droplets: domes on the partners or on the bead."""
+    """Droplets: domes on the partners or on the bead, none over a hole."""
     rng = np.random.default_rng([part.seed, 12])
     found = []
-    for _ in range(part.spatter):
+    for _ in range(rng.poisson(part.spatter * FLAT_SHARE) if part.flat else part.spatter):
         at = float(rng.uniform(theta[0], theta[-1]))
         away_mm = float(rng.laplace(0.0, 0.5))
         size_mm = float(np.exp(rng.uniform(np.log(0.015), np.log(0.11))))
@@ -152,6 +157,8 @@ def _spatter(part: Part, line: Contour, theta: Array, height: Array | None) -> l
                 continue
             share = (radius - line.inner_mm[index]) / (line.outer_mm[index] - line.inner_mm[index])
             base = float(height[round(share * (ACROSS - 1)), index])
+            if np.isnan(base):
+                continue
         found.append(_dome(part, at, radius, base, size_mm, float(rng.uniform(0.3, 0.9))))
     return found
 
@@ -169,7 +176,7 @@ def _fibres(part: Part) -> list[Mesh]:
     """Thin curved ribbons just above the surface."""
     rng = np.random.default_rng([part.seed, 13])
     found = []
-    for _ in range(part.fibres):
+    for _ in range(rng.poisson(part.fibres * FLAT_SHARE) if part.flat else part.fibres):
         theta = float(rng.uniform(-0.15, 0.15)) if part.flat else float(rng.uniform(0, 2 * np.pi))
         start = embed(part, np.array(theta), np.array(part.radius_mm + rng.normal(0, 0.5)), np.array(0.1))
         steps = np.linspace(0, 1, 40)

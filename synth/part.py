@@ -79,6 +79,11 @@ class Part:
     alpha_weld: float
     alpha_partner: float
     floor_reflectance: float
+    floor_texture: float
+    hole_rim_mm: float
+    hole_rim_width_mm: float
+    hole_crest_mm: float
+    soot_softness: float
     light_scale: float
     light_lean: float
     light_heading_deg: float
@@ -211,6 +216,11 @@ def draw_part(
         soot=seen(recipe.soot),
         veil=seen(recipe.veil),
         second_light=seen(recipe.second_light) if look.random() < recipe.second_light_share else 0.0,
+        floor_texture=seen(recipe.floor_texture),
+        hole_rim_mm=seen(recipe.hole_rim_mm),
+        hole_rim_width_mm=seen(recipe.hole_rim_width_mm),
+        soot_softness=seen(recipe.soot_softness),
+        hole_crest_mm=seen(recipe.hole_crest_mm),
         circles=recipe.circles,
     )
 

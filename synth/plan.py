@@ -1,6 +1,6 @@
 """Which crops a dataset has, before anything is rendered: the shards, each one scene. Same arguments, same plan."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,9 @@ VAL_EVERY = 7
 """Every seventh shard is for validation: no part has crops on both sides."""
 MIN_OVERLAP = 0.2
 """A crop shows a defect if it covers this share of the smaller of the two; a crop that is touched by less is not used."""
+SEAM_SHARE = 0.2
+"""Share of the flat crops in which the weld starts and ends; of a ring's it is one in 21, too few to learn its crater."""
+SEAM_DEG = 7.0
 RING_ERROR_PX = 3.0
 """Largest error of the ring's centre and radius that arcs are cut with: the station's own is smaller."""
 RING_ERROR_DEG = 0.7
@@ -70,16 +73,19 @@ def plan_flat(seed: int, wanted: dict[str, int], recipe: Recipe, switches: froze
 
 def _flat_part(seed: int, kind: str, recipe: Recipe, switches: frozenset[Switch]) -> Part:
     rng = np.random.default_rng([seed, 31])
-    part = draw_part(seed, Truth.OK, recipe, switches, ((), ()))
+    half_width_mm = draw_part(seed, Truth.OK, recipe, switches, ((), ())).half_width_mm
     holes: tuple[Hole, ...] = ()
     missing: tuple[MissingWeld, ...] = ()
     if kind == HOLE:
         count = int(rng.integers(1, 3))
-        holes = tuple(draw_hole(rng, recipe, part.half_width_mm, float(rng.uniform(-6.5, 6.5))) for _ in range(count))
+        holes = tuple(draw_hole(rng, recipe, half_width_mm, float(rng.uniform(-6.5, 6.5))) for _ in range(count))
     elif kind == MISSING:
         edge = float(rng.uniform(-3, 8)) if rng.random() < 0.35 else 90.0
         missing = (MissingWeld(-90.0, edge) if rng.random() < 0.5 else MissingWeld(-edge, 90.0),)
-    return draw_part(seed, Truth.OK, recipe, switches, (holes, missing), flat=True)
+    part = draw_part(seed, Truth.OK, recipe, switches, (holes, missing), flat=True)
+    if rng.random() < SEAM_SHARE:
+        part = replace(part, start_deg=float(rng.uniform(-SEAM_DEG, SEAM_DEG)))
+    return part
 
 
 def plan_arcs(seed: int, wanted: dict[str, int], recipe: Recipe, switches: frozenset[Switch]) -> list[Shard]:

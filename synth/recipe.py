@@ -116,6 +116,16 @@ class Recipe:
     alpha_partner: Annotated[Range, _within(0.01, 1)] = (0.20, 0.20)
     floor_reflectance: Shares = (0.03, 0.03)
     """Of what lies below holes and joint."""
+    floor_texture: Shares = (0.0, 0.5)
+    """How uneven it is."""
+    hole_rim_mm: Annotated[Range, _within(-0.1, 0.2)] = (0.01, 0.05)
+    """How far the melt sinks towards a hole's edge; below 0 it is heaped up to a lip."""
+    hole_rim_width_mm: Annotated[Range, _within(0.01, 0.3)] = (0.02, 0.06)
+    """How far from the edge that is felt."""
+    hole_crest_mm: Annotated[Range, _within(0.0, 0.2)] = (0.0, 0.02)
+    """How far from the edge it is most."""
+    soot_softness: Shares = (0.0, 0.6)
+    """From soot patches with sharp edges (0) to clouds (1)."""
     light_scale: Annotated[Range, _within(0.3, 2)] = (1.0, 1.0)
     """Size of the light's rings against the nominal ones."""
     light_lean: Shares = (0.0, 0.1)
@@ -153,14 +163,14 @@ WIDE = replace(
     rough_slope=(0.01, 0.11),
     wobble_mm=(0.0, 0.04),
     undercut_mm=(0.0, 0.04),
-    step_mm=0.08,
+    step_mm=0.22,
     gap_mm=(0.05, 0.22),
     soot=(0.0, 1.0),
     overlap_mm=(0.3, 6.0),
     overlap_width=(-0.05, 0.15),
     overlap_height_mm=(0.0, 0.04),
     crater_mm=(0.005, 0.10),
-    spatter=(0, 14),
+    spatter=(0, 60),
     bead_scratches=(0, 4),
     fibres=(0, 3),
     heat_tint=(0.0, 0.8),
@@ -169,8 +179,13 @@ WIDE = replace(
     alpha_weld=(0.10, 0.28),
     alpha_partner=(0.12, 0.30),
     floor_reflectance=(0.01, 0.08),
+    floor_texture=(0.0, 1.0),
+    hole_rim_mm=(-0.04, 0.06),
+    hole_rim_width_mm=(0.015, 0.09),
+    hole_crest_mm=(0.0, 0.05),
+    soot_softness=(0.0, 1.0),
     light_scale=(0.7, 1.3),
-    light_lean=(0.0, 0.7),
+    light_lean=(0.0, 0.9),
     second_light_share=0.4,
     veil=(0.0, 0.08),
     exposure=(0.5, 2.2),

@@ -128,7 +128,7 @@ def mitsuba_scene(scene: Scene) -> Any:
     """Shapes and materials as a Mitsuba scene, without lights."""
     parts = scene.parts
     eta, k = METALS[parts[0].material]
-    floor = {"type": "diffuse", "reflectance": _row([p.floor_reflectance for p in parts])}
+    floor = {"type": "diffuse", "reflectance": _bitmap(scene.floor)}
     materials = {
         "bead": _metal(scene.bead, [p.alpha_weld for p in parts], eta, k),
         "plate": _metal(scene.plate, [p.alpha_partner for p in parts], eta, k),

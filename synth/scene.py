@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.lights import Lights, lights
-from synth.materials import Surface, bead_surface, plate_surface
+from synth.materials import Surface, bead_surface, floor_reflectance, plate_surface
 from synth.mesh import FLAT_LENGTH_MM, FLAT_MM, Mesh, join, moved, part_meshes
 from synth.part import Part
 from synth.spectrum import WeldModel
@@ -27,6 +27,8 @@ class Scene:
     meshes: dict[str, Mesh]
     bead: Surface
     plate: Surface
+    floor: NDArray[np.float32]
+    """Reflectance (H, W) of what lies below holes and joint."""
     lights: tuple[Lights, ...]
     origin_mm: tuple[float, ...] = field(default=(0.0,))
 
@@ -34,7 +36,7 @@ class Scene:
 def part_scene(part: Part, model: WeldModel) -> Scene:
     """Scene of one whole part."""
     bead = bead_surface(part, 2 * np.pi * part.radius_mm)
-    return Scene((part,), part_meshes(part, model), bead, plate_surface(part), (lights(part, part.switches),))
+    return Scene((part,), part_meshes(part, model), bead, plate_surface(part), floor_reflectance(part), (lights(part, part.switches),))
 
 
 def flat_scene(parts: Sequence[Part], model: WeldModel) -> Scene:
@@ -52,6 +54,7 @@ def flat_scene(parts: Sequence[Part], model: WeldModel) -> Scene:
         {name: join(of_name) for name, of_name in meshes.items()},
         _side_by_side(beads),
         _side_by_side(plates),
+        np.concatenate([floor_reflectance(part) for part in parts], axis=1),
         tuple(lights(part, part.switches) for part in parts),
         origins,
     )
