@@ -1,19 +1,88 @@
-"""Changes to a crop that keep its label true: mirror, light, contrast, blur, noise."""
+"""Changes to crops that keep their labels true: another place, light, surface, lens and sensor. On whole batches, in torch."""
 
-import cv2
-import numpy as np
-from numpy.typing import NDArray
+import torch
+from torch import Tensor
+from torch.nn import functional
 
 
-def augment(crop: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
-    """A changed copy of a crop (128, 128) uint8. Mirroring the rows swaps the partners, the columns the direction."""
-    turned = np.ascontiguousarray(crop[:: rng.choice((-1, 1)), :: rng.choice((-1, 1))])
-    blurred = cv2.GaussianBlur(turned, (0, 0), float(rng.uniform(0.4, 1.6))) if rng.random() < 0.4 else turned
-    gain, gamma = float(np.exp(rng.uniform(-0.7, 0.7))), float(np.exp(rng.uniform(-0.4, 0.4)))
-    image = 255.0 * np.clip(blurred.astype(np.float32) * gain / 255.0, 0, 1) ** gamma
-    if rng.random() < 0.5:
-        slope = rng.uniform(-0.4, 0.4, 2)
-        ramp = np.linspace(-1, 1, crop.shape[0])
-        image = image * (1 + slope[0] * ramp[:, None] + slope[1] * ramp[None, :]).clip(0.2)
-    image = image + rng.standard_normal(image.shape, dtype=np.float32) * float(rng.uniform(0, 5))
-    return np.asarray(np.clip(image, 0, 255), np.uint8)
+def augment(images: Tensor, maps: Tensor, rng: torch.Generator) -> tuple[Tensor, Tensor]:
+    """Changed copies of images (K, 1, 128, 128) float, 0 to 255, and of their maps (K, 2, 32, 32) float, 0 to 1."""
+    images, maps = _move(images, maps, rng)
+    images = _light(_stain(images, rng), rng)
+    return _expose(_blur(images, rng), rng), maps
+
+
+def _uniform(low: float, high: float, shape: tuple[int, ...], rng: torch.Generator) -> Tensor:
+    return torch.rand(shape, generator=rng) * (high - low) + low
+
+
+def _sometimes(share: float, count: int, rng: torch.Generator) -> Tensor:
+    """(K, 1, 1, 1): 1 for about `share` of the crops, else 0."""
+    return (torch.rand((count, 1, 1, 1), generator=rng) < share).float()
+
+
+def _move(images: Tensor, maps: Tensor, rng: torch.Generator) -> tuple[Tensor, Tensor]:
+    """Mirror (rows swap the partners, columns the direction), stretch, shear and shift by a few pixels."""
+    count = len(images)
+    theta = torch.zeros(count, 2, 3)
+    for axis, (stretch, shift) in enumerate(((0.15, 0.08), (0.10, 0.10))):
+        mirror = torch.randint(0, 2, (count,), generator=rng).float() * 2 - 1
+        theta[:, axis, axis] = torch.exp(_uniform(-stretch, stretch, (count,), rng)) * mirror
+        theta[:, axis, 2] = _uniform(-shift, shift, (count,), rng)
+    theta[:, 0, 1] = _uniform(-0.12, 0.12, (count,), rng)
+
+    def moved(x: Tensor) -> Tensor:
+        grid = functional.affine_grid(theta, [count, 1, *x.shape[2:]], align_corners=False)
+        return functional.grid_sample(x, grid, mode="bilinear", padding_mode="reflection", align_corners=False)
+
+    return moved(images), moved(maps)
+
+
+def _smooth(points: tuple[int, int], count: int, rng: torch.Generator) -> Tensor:
+    """Smooth noise (K, 1, 128, 128) of standard deviation about 1 through a grid of random points."""
+    rough = torch.randn((count, 1, *points), generator=rng)
+    medium = functional.interpolate(rough, size=(32, 32), mode="bicubic", align_corners=True)
+    return functional.interpolate(medium, scale_factor=4.0, mode="bilinear")
+
+
+def _stain(images: Tensor, rng: torch.Generator) -> Tensor:
+    """Soft dark or bright patches with the texture still in them: soot, oxide, stains, which are no defects."""
+    count = len(images)
+    edge = _uniform(2, 10, (count, 1, 1, 1), rng)
+    level = _uniform(0.3, 1.6, (count, 1, 1, 1), rng)
+    coarse, fine = _smooth((5, 5), count, rng), _smooth((12, 12), count, rng)
+    patch = torch.sigmoid((coarse + 0.4 * fine - level) * edge)
+    depth = _uniform(-0.55, 0.3, (count, 1, 1, 1), rng) * _sometimes(0.35, count, rng)
+    return images * (1 + depth * patch)
+
+
+def _light(images: Tensor, rng: torch.Generator) -> Tensor:
+    """Light that changes over the crop, and partners and bead that are brighter or darker against each other."""
+    count = len(images)
+    over = _smooth((3, 3), count, rng) * _uniform(0, 0.25, (count, 1, 1, 1), rng)
+    across = _smooth((6, 2), count, rng).mean(dim=3, keepdim=True) * _uniform(0, 0.35, (count, 1, 1, 1), rng)
+    return images * torch.exp(over + across * _sometimes(0.5, count, rng))
+
+
+def _blur(images: Tensor, rng: torch.Generator) -> Tensor:
+    """Gaussian of 0.3 to 1.6 px on a third of the crops."""
+    count = len(images)
+    sigma = _uniform(0.3, 1.6, (count, 1), rng) * _sometimes(0.33, count, rng)[:, :, 0, 0] + 0.05
+    at = torch.arange(-5, 6, dtype=torch.float32)
+    kernel = torch.exp(-0.5 * (at / sigma) ** 2)
+    kernel = (kernel / kernel.sum(dim=1, keepdim=True))[:, None, None, :]
+    flat = functional.pad(images.reshape(1, count, 128, 128), (5, 5, 5, 5), mode="reflect")
+    flat = functional.conv2d(functional.conv2d(flat, kernel, groups=count), kernel.transpose(2, 3), groups=count)
+    return flat.reshape(count, 1, 128, 128)
+
+
+def _expose(images: Tensor, rng: torch.Generator) -> Tensor:
+    """Gain with clipping, gamma, noise of one and of two pixels' size, whole grey levels."""
+    count = len(images)
+    gain = torch.exp(_uniform(-0.7, 0.6, (count, 1, 1, 1), rng))
+    gamma = torch.exp(_uniform(-0.4, 0.4, (count, 1, 1, 1), rng))
+    images = 255 * (images * gain / 255).clamp(1e-4, 1) ** gamma
+    fine = torch.randn(images.shape, generator=rng)
+    wide = functional.interpolate(torch.randn((count, 1, 64, 64), generator=rng), scale_factor=2.0, mode="nearest")
+    noise = fine * _uniform(0, 5, (count, 1, 1, 1), rng) + wide * _uniform(0, 4, (count, 1, 1, 1), rng) * _sometimes(0.3, count, rng)
+    return (images + noise * _sometimes(0.5, count, rng)).round().clamp(0, 255)

@@ -1,58 +1,141 @@
-"""Trained networks to ONNX files with their contract in the metadata; kept only if they agree with the networks."""
+"""Trained networks to ONNX files with their contract in the metadata, and back; kept only if they agree with the networks."""
 
+import copy
 import json
 import os
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import onnx
 import torch
 from numpy.typing import NDArray
+from onnx import numpy_helper
+from torch import Tensor, nn
+from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from models.errors import LearningError
-from models.network import Probabilities, WeldNet
+from models.network import FEATURES, WeldNet
 from models.ring import RingNet
+from station.classify.decision import Thresholds
 from station.classify.onnx import CLASSES, Classifier, RingNetwork
+from station.domain import SEGMENT_PX
 from station.vision.polar import COLUMNS, ROWS
 
 TOLERANCE = 1e-4
 
 
-def export(network: WeldNet, path: Path, version: str, data_hash: str, hole_threshold: float, missing_threshold: float) -> None:
+@dataclass(frozen=True, slots=True, eq=False)
+class Contract:
+    """What a classifier's file says of itself beside its weights."""
+
+    version: str
+    data_hash: str
+    """SHA-256 of the training images."""
+    thresholds: Thresholds
+    mean: NDArray[np.float64]
+    """Mean features of the training crops (160,)."""
+    whitening: NDArray[np.float64]
+    """(160, 160): features minus mean times this have unit covariance over the training crops."""
+    novelty_limit: float
+    """Distance of a part to the training images from which it is reported."""
+    prior_shift: tuple[float, float, float]
+    """Added to the logits of ok, hole, missing weld: from the shares of the training batches to those of a line."""
+
+    def metadata(self) -> dict[str, str]:
+        """As in the file."""
+        return {
+            "weldgate.classes": json.dumps(CLASSES),
+            "weldgate.thresholds": json.dumps({"hole": self.thresholds.hole, "missing_weld": self.thresholds.missing_weld}),
+            "weldgate.novelty_limit": json.dumps(self.novelty_limit),
+            "weldgate.data_hash": self.data_hash,
+            "weldgate.version": self.version,
+        }
+
+
+class Shipped(nn.Module):
+    """The network as the station runs it: probabilities, defect map, distance of the features to the training images."""
+
+    def __init__(self, network: WeldNet, prior_shift: tuple[float, float, float]) -> None:
+        super().__init__()
+        self.network = network
+        self.prior_shift: Tensor
+        self.register_buffer("prior_shift", torch.tensor(prior_shift))
+        self.whiten = nn.Linear(FEATURES, FEATURES)
+
+    def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Crops (K, 1, 128, 128) uint8 to probabilities (K, 3), map (K, 2, 32, 32) 0..1, mean squared distances (K,)."""
+        logits, where, features = self.network(crops)
+        away = self.whiten(features)
+        return torch.softmax(logits + self.prior_shift, dim=1), torch.sigmoid(where), (away * away).mean(dim=1)
+
+
+def fused(network: WeldNet) -> WeldNet:
+    """A copy whose batch norms are folded into the convolutions: as it is exported, and as it is read back."""
+    answer = copy.deepcopy(network).eval()
+    for module in answer.modules():
+        if isinstance(module, nn.Sequential) and len(module) > 1 and isinstance(module[1], nn.BatchNorm2d):
+            module[0] = fuse_conv_bn_eval(cast("nn.Conv2d", module[0]), module[1])
+            module[1] = nn.Identity()
+    return answer
+
+
+def export(network: WeldNet, path: Path, contract: Contract) -> None:
     """Write the classifier. Raises LearningError if the file's answers differ from the network's by more than 1e-4."""
-    crops = torch.from_numpy(np.random.default_rng(0).integers(0, 256, (21, 1, 128, 128), dtype=np.uint8))
-    metadata = {
-        "weldgate.classes": json.dumps(CLASSES),
-        "weldgate.thresholds": json.dumps({"hole": hole_threshold, "missing_weld": missing_threshold}),
-        "weldgate.data_hash": data_hash,
-        "weldgate.version": version,
-    }
-    whole = Probabilities(network).eval()
-    part = _write(whole, crops, path, "crops", "probabilities", metadata)
-    got = np.array([(s.ok, s.hole, s.missing_weld) for s in Classifier(part)(crops.numpy()[:, 0])])
-    _keep(part, path, _answer(whole, crops), got)
+    whole = Shipped(fused(network), contract.prior_shift).eval()
+    with torch.no_grad():
+        whole.whiten.weight.copy_(torch.from_numpy(contract.whitening.T))
+        whole.whiten.bias.copy_(torch.from_numpy(-contract.mean @ contract.whitening))
+    crops = torch.from_numpy(_example((21, 1, SEGMENT_PX, SEGMENT_PX)))
+    part = write_onnx(whole, crops, path, "crops", ("probabilities", "maps", "distances"), contract.metadata())
+    with torch.no_grad():
+        wanted = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
+    got = Classifier(part)(crops.numpy()[:, 0])
+    pairs = zip(wanted, (np.array([(s.ok, s.hole, s.missing_weld) for s in got.scores]), got.maps, got.distances), strict=True)
+    _keep(part, path, max(_gap(a, b) for a, b in pairs))
 
 
 def export_ring(network: RingNet, path: Path, version: str, data_hash: str) -> None:
     """Write the ring network. Raises LearningError if the file's answers differ from the network's by more than 1e-4."""
-    bands = torch.from_numpy(np.random.default_rng(0).integers(0, 256, (1, 1, ROWS, COLUMNS), dtype=np.uint8))
+    bands = torch.from_numpy(_example((1, 1, ROWS, COLUMNS)))
     metadata = {"weldgate.data_hash": data_hash, "weldgate.version": version}
-    part = _write(network.eval(), bands, path, "bands", "sectors", metadata)
-    _keep(part, path, _answer(network, bands), RingNetwork(part).sectors(bands.numpy()[:, 0]))
+    part = write_onnx(network.eval(), bands, path, "bands", ("sectors",), metadata)
+    with torch.no_grad():
+        wanted = np.asarray(network(bands).numpy(), np.float64)
+    _keep(part, path, _gap(wanted, RingNetwork(part).sectors(bands.numpy()[:, 0])))
 
 
-def _write(network: torch.nn.Module, example: torch.Tensor, path: Path, source: str, target: str, metadata: dict[str, str]) -> Path:
+def read_network(path: Path) -> WeldNet:
+    """The network of a classifier file, to train it further. Raises ModelError or LearningError if it is none."""
+    Classifier(path)
+    network = fused(WeldNet())
+    held = {i.name: torch.from_numpy(numpy_helper.to_array(i).copy()) for i in onnx.load(str(path)).graph.initializer}
+    weights = {name: held.get(f"network.{name}") for name in network.state_dict()}
+    lacking = [name for name, value in weights.items() if value is None]
+    if lacking:
+        raise LearningError(f"{path}: not a float32 file of this network, it lacks {lacking[0]}; name one made by weldgate-models train")
+    network.load_state_dict({name: value for name, value in weights.items() if value is not None})
+    return network
+
+
+def _example(shape: tuple[int, ...]) -> NDArray[np.uint8]:
+    return np.random.default_rng(0).integers(0, 256, shape, dtype=np.uint8)
+
+
+def write_onnx(module: nn.Module, example: Tensor, path: Path, source: str, targets: tuple[str, ...], metadata: dict[str, str]) -> Path:
+    """Export beside `path`, which is not touched yet: `*.part.onnx`, to be checked and renamed. The first axis may be of any length."""
     part = path.with_suffix(".part.onnx")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # the tracing exporter needs no further package
         torch.onnx.export(
-            network,
+            module,
             (example,),
             str(part),
             input_names=[source],
-            output_names=[target],
-            dynamic_axes={source: {0: "count"}, target: {0: "count"}},
+            output_names=list(targets),
+            dynamic_axes={name: {0: "count"} for name in (source, *targets)},
             opset_version=17,
             dynamo=False,
         )
@@ -64,13 +147,11 @@ def _write(network: torch.nn.Module, example: torch.Tensor, path: Path, source: 
     return part
 
 
-def _answer(network: torch.nn.Module, example: torch.Tensor) -> NDArray[np.float64]:
-    with torch.no_grad():
-        return np.asarray(network(example).numpy(), np.float64)
+def _gap(wanted: NDArray[np.float64], got: NDArray[np.floating]) -> float:
+    return float((np.abs(wanted - got) / np.maximum(1.0, np.abs(wanted))).max())
 
 
-def _keep(part: Path, path: Path, wanted: NDArray[np.float64], got: NDArray[np.float64]) -> None:
-    gap = float((np.abs(wanted - got) / np.maximum(1.0, np.abs(wanted))).max())
+def _keep(part: Path, path: Path, gap: float) -> None:
     if not gap <= TOLERANCE:
         part.unlink()
         raise LearningError(f"{path}: the exported file differs from the network by {gap:.2g}; nothing kept")

@@ -1,11 +1,12 @@
-"""Labelled parts to strips and crops, through the station's own unwrap.
+"""Labelled parts to strips and crops, through the station's own unwrap: rendered lots and a line's own labelled images.
 
-A lot is a folder with `labels.json` (what `weldgate-synth part` writes) and `frames/`.
+A lot is a folder with `labels.json` (what `weldgate-synth part` writes) and `frames/`. The paper's protocol for real images
+(section 3.2): a window that slides by 10 px, kinds balanced by repeating and leaving out, 70/15/15 % by part.
 """
 
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,15 +15,18 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from models.errors import LearningError
+from models.crops import HOLE, IGNORED, MISSING, OK, Crops, empty_maps
+from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
-from station.domain import SEGMENT_DEG, SEGMENT_PX, STRIP_COLUMNS, Ring
+from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, Ring
+from station.errors import LocateError
 from station.vision.unwrap import unwrap
 
-OK, HOLE, MISSING = range(3)
-IGNORED = -1
 MIN_OVERLAP = 0.2
 """A crop is NOK if a defect covers this share of the smaller of crop and defect; below, but not 0, it is ignored."""
+WINDOW_STEP_PX = 10
+SHARES = (0.70, 0.15, 0.15)
+KINDS = {"hole_small": HOLE, "hole_long": HOLE, "hole": HOLE, "missing_weld": MISSING}
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +46,14 @@ class LabelledStrip:
     strip: NDArray[np.uint8]
     defects: tuple[Defect, ...]
 
-    def crop(self, column: int) -> tuple[NDArray[np.uint8], int]:
-        """Crop (128, 128) that starts at `column` (wraps round) and its label, `IGNORED` included."""
-        columns = np.arange(column, column + SEGMENT_PX) % STRIP_COLUMNS
+    def crop(self, column: int) -> NDArray[np.uint8]:
+        """Crop (128, 128) that starts at `column`; wraps round."""
+        return self.strip[:, np.arange(column, column + SEGMENT_PX) % STRIP_COLUMNS]
+
+    def crop_label(self, column: int) -> int:
+        """Label of the crop that starts at `column`, `IGNORED` included."""
         start = column * 360.0 / STRIP_COLUMNS
-        return self.strip[:, columns], crop_label(self.defects, start, start + SEGMENT_DEG)
+        return crop_label(self.defects, start, start + SEGMENT_DEG)
 
 
 def crop_label(defects: tuple[Defect, ...], start_deg: float, end_deg: float) -> int:
@@ -67,22 +74,18 @@ def crop_label(defects: tuple[Defect, ...], start_deg: float, end_deg: float) ->
     return IGNORED if label == OK and touched else label
 
 
-def read_lot(folder: Path, jitters: int, rng: np.random.Generator, progress: Callable[[], None] = lambda: None) -> list[LabelledStrip]:
-    """Strips of all parts: one with the true ring and `jitters` more with the ring moved by a few pixels.
-
-    Raises LearningError listing what is wrong, before any strip is cut.
-    """
-    labels = read_labels(folder)
+def read_lot(folder: Path, progress: Callable[[], None] = lambda: None) -> list[LabelledStrip]:
+    """Strips of all parts, cut at the labelled ring. Raises LearningError listing all that is wrong, before any strip is cut."""
     strips = []
-    for item in labels:
+    for item in read_labels(folder):
         image = cv2.imread(str(folder / "frames" / item["frame"]), cv2.IMREAD_GRAYSCALE)
         if image is None:
             raise LearningError(f"{folder / 'frames' / item['frame']}: not a readable image")
-        defects = defects_of(item)
-        for index in range(1 + jitters):
-            dx, dy, dr = rng.uniform(-4, 4, 3) if index else (0.0, 0.0, 0.0)
-            ring = Ring(item["center"][0] + dx, item["center"][1] + dy, item["radius"] + dr, 1.0)
-            strips.append(LabelledStrip(item["frame"], unwrap(np.asarray(image, np.uint8), ring), defects))
+        ring = Ring(item["center"][0], item["center"][1], item["radius"], 1.0)
+        try:
+            strips.append(LabelledStrip(item["frame"], unwrap(np.asarray(image, np.uint8), ring), defects_of(item)))
+        except LocateError as error:
+            raise LearningError(f"{folder / 'frames' / item['frame']}: {error}; correct its label") from None
         progress()
     return strips
 
@@ -98,7 +101,94 @@ def read_images(folder: Path) -> list[tuple[NDArray[np.uint8], float, float, flo
     return found
 
 
-def data_hash(folders: list[Path]) -> str:
+def window_crops(strips: Sequence[LabelledStrip], step_px: int, rng: np.random.Generator | None) -> Crops:
+    """Crops by a window that slides over each strip; with `rng` the kinds are balanced as in the paper: the rarer defect is
+    repeated to the number of the other, the OK crops are cut down to the number of both (repeated if there are fewer)."""
+    places = [
+        (i, c, strip.crop_label(c)) for i, strip in enumerate(strips) for c in range(0, STRIP_COLUMNS - STRIP_COLUMNS % step_px, step_px)
+    ]
+    labels = np.array([label for _, _, label in places])
+    chosen = np.flatnonzero(labels != IGNORED)
+    if rng is not None:
+        pools = {kind: chosen[labels[chosen] == kind] for kind in (OK, HOLE, MISSING)}
+        lacking = [CLASSES[kind] for kind, pool in pools.items() if not pool.size]
+        if lacking:
+            raise LearningError(f"the parts to train on show no {', '.join(lacking)}; label more parts")
+        most = max(len(pools[HOLE]), len(pools[MISSING]))
+        wanted = {OK: 2 * most, HOLE: most, MISSING: most}
+        chosen = np.concatenate([_resampled(pool, wanted[kind], rng) for kind, pool in pools.items()])
+    return _cut(strips, [places[i] for i in chosen])
+
+
+def station_crops(strips: Sequence[LabelledStrip]) -> Crops:
+    """The 21 crops of each strip as the station cuts them, those whose label is open left out."""
+    places = [(i, c, s.crop_label(c)) for i, s in enumerate(strips) for c in range(0, SEGMENTS * SEGMENT_PX, SEGMENT_PX)]
+    return _cut(strips, [p for p in places if p[2] != IGNORED])
+
+
+def _cut(strips: Sequence[LabelledStrip], places: Sequence[tuple[int, int, int]]) -> Crops:
+    images = np.empty((len(places), SEGMENT_PX, SEGMENT_PX), np.uint8)
+    for number, (index, column, _) in enumerate(places):
+        images[number] = strips[index].crop(column)
+    return Crops(
+        images=images,
+        labels=np.array([label for _, _, label in places], np.int64),
+        maps=empty_maps(len(places)),
+        mapped=np.zeros(len(places), bool),
+        parts=np.array([strips[i].part for i, _, _ in places], np.str_),
+        names=np.array([f"{strips[i].part}, {c * 360 / STRIP_COLUMNS:.0f} degrees" for i, c, _ in places], np.str_),
+    )
+
+
+def _resampled(pool: NDArray[np.int64], count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    if count <= pool.size:
+        return np.asarray(rng.choice(pool, count, replace=False), np.int64)
+    return np.concatenate([np.tile(pool, count // pool.size), rng.choice(pool, count % pool.size, replace=False)])
+
+
+def split_by_part(strips: Sequence[LabelledStrip], seed: int) -> tuple[list[LabelledStrip], list[LabelledStrip], list[LabelledStrip]]:
+    """Training, validation and test strips, 70/15/15 %: all strips of one part on one side, each side with its share of defects.
+
+    Raises LearningError if there are too few parts.
+    """
+    parts = sorted({s.part: max((d.label for d in s.defects), default=OK) for s in strips}.items())
+    rng = np.random.default_rng(seed)
+    sides: dict[str, int] = {}
+    owed = np.zeros(3)
+    for kind in (MISSING, HOLE, OK):
+        for name in rng.permutation([n for n, k in parts if k == kind]):
+            owed += SHARES
+            side = int(np.argmax(owed))
+            owed[side] -= 1
+            sides[str(name)] = side
+    train, validate, test = ([s for s in strips if sides[s.part] == side] for side in range(3))
+    if not (train and validate and test):
+        raise LearningError(f"{len(parts)} parts are too few to split by part; at least 7 are needed")
+    return train, validate, test
+
+
+def read_labels(folder: Path) -> list[dict[str, Any]]:
+    """Entries of `labels.json`. Raises LearningError listing all that is wrong: entries, absent and doubled images."""
+    path = folder / "labels.json"
+    try:
+        labels = json.loads(path.read_text(encoding="utf-8"))["frames"]
+        named = [(str(item["frame"]), item) for item in labels]
+    except FileNotFoundError:
+        raise LearningError(f"{path}: no such file; render a lot first with weldgate-synth part --out {folder}") from None
+    except (ValueError, KeyError, TypeError):
+        raise LearningError(f"{path}: not a labels file") from None
+    if not named:
+        raise LearningError(f"{path}: names no image")
+    wrong = [f"{name}: {problem}" for name, item in named if (problem := _problem(item))]
+    wrong += [f"{name}: the image is missing" for name, _ in named if not (folder / "frames" / name).is_file()]
+    seen: set[str] = set()
+    wrong += [f"{name}: labelled twice" for name, _ in named if name in seen or seen.add(name)]  # type: ignore[func-returns-value]
+    if wrong:
+        raise LearningError(listed(folder, wrong))
+    return [item for _, item in named]
+
+
+def data_hash(folders: Sequence[Path]) -> str:
     """SHA-256 over the labels and the images of lots, images in the order of their names."""
     digest = hashlib.sha256()
     for folder in folders:
@@ -108,37 +198,25 @@ def data_hash(folders: list[Path]) -> str:
     return digest.hexdigest()
 
 
-def split_by_part(strips: list[LabelledStrip], share: float) -> tuple[list[LabelledStrip], list[LabelledStrip]]:
-    """Training and validation strips: all strips of one part on one side, every n-th of the parts held out."""
-    parts = sorted({s.part for s in strips})
-    every = max(1, round(1 / share))
-    held = set(parts[every - 1 :: every])
-    return [s for s in strips if s.part not in held], [s for s in strips if s.part in held]
-
-
-def read_labels(folder: Path) -> list[dict[str, Any]]:
-    """Entries of `labels.json`. Raises LearningError if any is wrong or its image is missing."""
-    path = folder / "labels.json"
+def _problem(item: dict[str, Any]) -> str | None:
+    """What is wrong with an entry."""
     try:
-        labels = json.loads(path.read_text())["frames"]
-    except FileNotFoundError:
-        raise LearningError(f"{path}: no such file; render a lot first with weldgate-synth part --out {folder}") from None
-    except (ValueError, KeyError, TypeError):
-        raise LearningError(f"{path}: not a labels file") from None
-    absent = [item["frame"] for item in labels if not (folder / "frames" / item["frame"]).is_file()]
-    if absent:
-        raise LearningError(f"{path}: {len(absent)} images are missing: {', '.join(absent[:5])}")
-    unknown = {d["kind"] for item in labels for d in item["defects"]} - {"hole_small", "hole_long", "missing_weld"}
-    if unknown:
-        raise LearningError(f"{path}: unknown kinds {sorted(unknown)}; known: hole_small, hole_long, missing_weld")
-    return list(labels)
+        x, y = item["center"]
+        if not (float(item["radius"]) > 0 and np.isfinite([x, y, item["radius"]]).all()):
+            return "centre and radius must be numbers"
+        for defect in item["defects"]:
+            start, end = defect["angle_deg"]
+            if defect["kind"] not in KINDS:
+                return f"unknown kind {defect['kind']}; known: {', '.join(KINDS)}"
+            if not 0 <= float(end) - float(start) <= 360:
+                return f"angle_deg {defect['angle_deg']} must be [start, end], end 0 to 360 degrees after start"
+        if item["verdict"] not in ("OK", "NOK") or (item["verdict"] == "NOK") != bool(item["defects"]):
+            return f"verdict {item['verdict']} does not fit {len(item['defects'])} defects"
+    except (KeyError, ValueError, TypeError) as error:
+        return f"the entry lacks or garbles {error}"
+    return None
 
 
 def defects_of(item: dict[str, Any]) -> tuple[Defect, ...]:
     """Defects of one labelled part."""
-    return tuple(_defect(d) for d in item["defects"])
-
-
-def _defect(item: dict[str, Any]) -> Defect:
-    start, end = item["angle_deg"]
-    return Defect(CLASSES.index("missing_weld") if item["kind"] == "missing_weld" else CLASSES.index("hole"), start, end)
+    return tuple(Defect(KINDS[d["kind"]], float(d["angle_deg"][0]), float(d["angle_deg"][1])) for d in item["defects"])

@@ -1,47 +1,87 @@
-"""The classifier network, normalisation included: uint8 crops in, class logits out."""
+"""The network, normalisation included: uint8 crops in; class logits, a coarse defect map and features out."""
 
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
+
+FEATURES = 160
+"""Length of the pooled feature vector that the classes are told from."""
 
 
-def _block(inputs: int, outputs: int) -> nn.Sequential:
-    return nn.Sequential(
-        nn.Conv2d(inputs, outputs, 3, stride=2, padding=1, bias=False),
-        nn.BatchNorm2d(outputs),
-        nn.SiLU(),
-        nn.Conv2d(outputs, outputs, 3, padding=1, groups=outputs, bias=False),
-        nn.Conv2d(outputs, outputs, 1, bias=False),
-        nn.BatchNorm2d(outputs),
-        nn.SiLU(),
-    )
+def channels_last(network: nn.Module) -> None:
+    """Lay the weights out so that convolutions take half the time on a CPU."""
+    network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+
+
+class _Conv(nn.Sequential):
+    """Convolution, batch norm, ReLU: the runtime fuses the three."""
+
+    def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1, groups: int = 1) -> None:
+        super().__init__(
+            nn.Conv2d(inputs, outputs, size, stride, (size - stride + 1) // 2, groups=groups, bias=False),
+            nn.BatchNorm2d(outputs),
+            nn.ReLU(inplace=True),
+        )
+
+
+class _Mix(nn.Module):
+    """Residual block: one filter per channel for the surroundings, 1 x 1 for the channels."""
+
+    def __init__(self, channels: int, size: int) -> None:
+        super().__init__()
+        self.branch = nn.Sequential(nn.Conv2d(channels, channels, size, padding=size // 2, groups=channels), _Conv(channels, channels))
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Same shape out."""
+        answer: Tensor = x + self.branch(x)
+        return answer
+
+
+class _Up(nn.Module):
+    """A coarse map, twice as fine, joined with a fine one."""
+
+    def __init__(self, coarse: int, fine: int, outputs: int) -> None:
+        super().__init__()
+        self.coarse, self.fine = nn.Conv2d(coarse, outputs, 1), nn.Conv2d(fine, outputs, 1, bias=False)
+
+    def forward(self, coarse: Tensor, fine: Tensor) -> Tensor:
+        """(K, coarse, H, W) and (K, fine, 2H, 2W) to (K, outputs, 2H, 2W)."""
+        wide = functional.interpolate(self.coarse(coarse), scale_factor=2.0, mode="nearest")
+        return functional.relu(wide + self.fine(fine))
 
 
 class WeldNet(nn.Module):
-    """Four strided blocks, then the mean and the maximum over the crop: a small hole counts as much as a wide gap."""
+    """Down to 8 x 8, back up to 32 x 32 for the map; the classes see both ends and the strongest point of the map.
+
+    One network classifies and locates, so that verdict and map can never contradict each other's features.
+    """
 
     def __init__(self) -> None:
         super().__init__()
-        self.features = nn.Sequential(_block(1, 24), _block(24, 48), _block(48, 96), _block(96, 128))
-        self.head = nn.Sequential(nn.Dropout(0.2), nn.Linear(256, 3))
+        self.quarter = nn.Sequential(_Conv(1, 32, 8, 4), _Mix(32, 3))
+        self.eighth = nn.Sequential(_Conv(32, 64, 2, 2), _Mix(64, 5), _Mix(64, 5))
+        self.sixteenth = nn.Sequential(_Conv(64, 128, 2, 2), _Mix(128, 3), _Mix(128, 3))
+        self.up_eighth = _Up(128, 64, 48)
+        self.up_quarter = _Up(48, 32, 32)
+        self.fine = _Mix(32, 3)
+        self.map = nn.Conv2d(32, 2, 1)
+        self.feature = nn.Sequential(nn.Linear(2 * 128 + 2 * 32, FEATURES), nn.ReLU())
+        self.classes = nn.Sequential(nn.Dropout(0.2), nn.Linear(FEATURES + 2, 3))
 
-    def forward(self, crops: Tensor) -> Tensor:
-        """Logits (K, 3) of crops (K, 1, 128, 128) uint8; each crop is brought to mean 0 and standard deviation 1."""
+    def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Crops (K, 1, 128, 128) uint8 to class logits (K, 3), map logits (K, 2, 32, 32) of hole and missing weld, features (K, 160).
+
+        Each crop is brought to mean 0 and standard deviation 1.
+        """
         x = crops.to(torch.float32)
         centred = x - x.mean(dim=(2, 3), keepdim=True)
         spread = torch.sqrt((centred * centred).mean(dim=(2, 3), keepdim=True))
-        maps = self.features(centred / (spread + 2.0))
-        pooled = torch.cat([maps.mean(dim=(2, 3)), maps.amax(dim=(2, 3))], dim=1)
-        logits: Tensor = self.head(pooled)
-        return logits
-
-
-class Probabilities(nn.Module):
-    """The network as shipped: probabilities instead of logits."""
-
-    def __init__(self, network: WeldNet) -> None:
-        super().__init__()
-        self.network = network
-
-    def forward(self, crops: Tensor) -> Tensor:
-        """Probabilities (K, 3) of crops (K, 1, 128, 128) uint8."""
-        return torch.softmax(self.network(crops), dim=1)
+        quarter = self.quarter(centred / (spread + 2.0))
+        eighth = self.eighth(quarter)
+        sixteenth = self.sixteenth(eighth)
+        fine = self.fine(self.up_quarter(self.up_eighth(sixteenth, eighth), quarter))
+        where = self.map(fine)
+        ends = [sixteenth.mean(dim=(2, 3)), sixteenth.amax(dim=(2, 3)), fine.mean(dim=(2, 3)), fine.amax(dim=(2, 3))]
+        features = self.feature(torch.cat(ends, dim=1))
+        logits = self.classes(torch.cat([features, where.amax(dim=(2, 3))], dim=1))
+        return logits, where, features

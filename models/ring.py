@@ -14,7 +14,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from models.data import read_images
+from models.labelled import read_images
+from models.network import channels_last
 from station.vision.polar import ROWS, SECTORS, polar_band
 
 BIN_PX = 4
@@ -69,7 +70,7 @@ class RingNet(nn.Module):
 class RingPlan:
     """How to train."""
 
-    steps: int = 2400
+    steps: int = 1500
     batch: int = 16
     learning_rate: float = 0.003
     seed: int = 0
@@ -83,6 +84,7 @@ def train_ring(lots: list[Path], plan: RingPlan, report: Callable[[str], None]) 
     held = max(1, len(parts) // 10)
     training, kept = parts[:-held], parts[-held:]
     network = RingNet()
+    channels_last(network)
     optimizer = torch.optim.AdamW(network.parameters(), lr=plan.learning_rate, weight_decay=0.01)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, plan.learning_rate, total_steps=plan.steps)
     running = 0.0
@@ -154,6 +156,8 @@ def _sample(
     angle = (np.arange(SECTORS) + 0.5) * (2 * np.pi / SECTORS)
     along, across = -dx * np.cos(angle) - dy * np.sin(angle), dx * np.sin(angle) - dy * np.cos(angle)
     offset = along + np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - (radius + dr)
+    if rng.random() < 0.5:  # the partners change places
+        band, offset = np.ascontiguousarray(band[::-1]), -offset
     return _relight(band, rng), offset.astype(np.float32), there
 
 

@@ -155,7 +155,15 @@ class Cycle:
                 "part %d, %s: came too late, the PLC was not shown its verdict %s", record.inspection_id, record.serial, record.verdict
             )
         self._mark(record, shown)
-        self._listener.event(PartEvent(record, self._seg_nok(record.inspection), shown, record_ms, publish_ms))
+        novel = self._inspector.is_novel(record.inspection)
+        if novel:
+            log.warning(
+                "part %d, %s: unlike the training images (distance %.2f); check light, focus and surface",
+                record.inspection_id,
+                record.serial,
+                record.inspection.novelty,
+            )
+        self._listener.event(PartEvent(record, self._seg_nok(record.inspection), novel, shown, record_ms, publish_ms))
         if frame is not None:
             self._listener.preview(make_preview(record.inspection_id, frame.image, record.inspection.ring))
 
@@ -215,7 +223,7 @@ class Cycle:
 
     def _result(self, trigger: Trigger, record: Record) -> Result:
         inspection = record.inspection
-        nok = self._seg_nok(inspection)
+        nok, novel = self._seg_nok(inspection), self._inspector.is_novel(inspection)
         reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]
         return Result(
             trigger=trigger,
@@ -226,7 +234,7 @@ class Cycle:
             seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
             seg_nok_mask=sum(1 << i for i, bad in enumerate(nok) if bad),
             seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
-            flags=Flags.SIMULATED if self._origin is Origin.SIMULATED else Flags(0),
+            flags=(Flags.SIMULATED if self._origin is Origin.SIMULATED else Flags(0)) | (Flags.NOVEL if novel else Flags(0)),
         )
 
     def _count(self, verdict: Verdict) -> None:

@@ -113,7 +113,11 @@ class Finding:
     start_deg: float
     end_deg: float
     length_mm: float
+    """Along the weld."""
     score: float
+    width_mm: float | None = None
+    """Across the weld; None, as the area, if the defect was not seen apart from its segment."""
+    area_mm2: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +142,8 @@ class Inspection:
     scores: tuple[SegmentScores, ...] = ()
     findings: tuple[Finding, ...] = ()
     timing: Timing = field(default_factory=Timing)
+    novelty: float | None = None
+    """Distance of the part's crops to the training images in the network's features; about 1 for these."""
 
     def __post_init__(self) -> None:
         if self.verdict is Verdict.OK and (len(self.scores) != SEGMENTS or self.ring is None or self.reason is not None):

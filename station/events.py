@@ -45,6 +45,8 @@ class PartEvent:
 
     record: Record
     seg_nok: tuple[bool, ...]
+    novel: bool
+    """The picture is unlike all training images: its verdict deserves less trust, and the line a look."""
     shown_to_plc: bool
     """False: the result came too late or was refused; the PLC saw ERROR or nothing."""
     record_ms: float

@@ -1,8 +1,11 @@
 """Frame to verdict: locate, unwrap, quality gate, classify, decide. No device, no file."""
 
+from math import sqrt
 from time import perf_counter
 
-from station.classify.decision import Thresholds, findings, segment_kind
+import numpy as np
+
+from station.classify.decision import Thresholds, findings, mean_of, near_threshold, segment_kind
 from station.classify.onnx import Classifier, RingNetwork
 from station.domain import Image, Inspection, Reason, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
@@ -19,12 +22,12 @@ class Inspector:
         self, ring_network: RingNetwork, classifier: Classifier, weld: WeldSettings, quality: QualitySettings, model: ModelSettings
     ) -> None:
         self._ring_network = ring_network
-        self._classifier = classifier
+        self.classifier = classifier
         self._weld = weld
         self._quality = quality
         px_per_mm = 1000.0 / weld.um_per_px
         self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
-        card = classifier.card
+        self.card = card = classifier.card
         self.thresholds = Thresholds(
             hole=card.hole_threshold if model.hole_threshold is None else model.hole_threshold,
             missing_weld=card.missing_threshold if model.missing_threshold is None else model.missing_threshold,
@@ -37,6 +40,10 @@ class Inspector:
     def is_nok(self, scores: SegmentScores) -> bool:
         """Whether a segment with these scores is refused."""
         return segment_kind(scores, self.thresholds) is not None
+
+    def is_novel(self, judged: Inspection) -> bool:
+        """Whether a part looks unlike all training images, so that its verdict deserves less trust."""
+        return judged.novelty is not None and judged.novelty > self.card.novelty_limit
 
     def inspect(self, image: Image, grab_ms: float | None = None) -> Inspection:
         """Judge `image` (H, W) uint8. Every way that does not end with 21 judged segments ends in ERROR."""
@@ -56,11 +63,11 @@ class Inspector:
         if poor is not None:
             return Inspection.error(poor, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
         try:
-            scores = self._classifier(segments(strip))
+            judged = self.classifier(segments(strip))
+            scores = self._look_twice(strip, judged.scores)
         except ModelError:
             return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
-        radius_mm = ring.radius_px * self._weld.um_per_px / 1000.0
-        found = findings(scores, self.thresholds, radius_mm)
+        found = findings(scores, judged.maps, self.thresholds, ring, self._weld.um_per_px)
         worst = max(found, key=lambda f: f.score, default=None)
         return Inspection(
             verdict=Verdict.OK if worst is None else Verdict.NOK,
@@ -70,7 +77,19 @@ class Inspector:
             scores=scores,
             findings=found,
             timing=Timing(grab_ms, locate_ms, unwrap_ms, _ms(start)),
+            novelty=sqrt(float(judged.distances.mean())),
         )
+
+    def _look_twice(self, strip: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:
+        """Segments near their threshold are seen again in the mirror: a mirrored weld is a weld, with the same defects."""
+        near = [i for i, s in enumerate(scores) if near_threshold(s, self.thresholds)]
+        if not near:
+            return scores
+        crops = segments(strip)[near]
+        views = np.concatenate([crops[:, :, ::-1], crops[:, ::-1], crops[:, ::-1, ::-1]])
+        again = self.classifier(np.ascontiguousarray(views)).scores
+        seen = {segment: (scores[segment], *again[i :: len(near)]) for i, segment in enumerate(near)}
+        return tuple(mean_of(seen[i]) if i in seen else s for i, s in enumerate(scores))
 
 
 def _ms(start: float) -> float:

@@ -3,6 +3,7 @@
 import csv
 import json
 from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -51,10 +52,8 @@ def entry(inspection: Inspection) -> dict[str, Any]:
         "segments": [s.nok for s in inspection.scores] or [None] * 21,
         "unwrap_start_deg": 0.0,
         "direction": "cw",
-        "findings": [
-            {"kind": str(f.kind), "start_deg": f.start_deg, "end_deg": f.end_deg, "length_mm": f.length_mm, "score": f.score}
-            for f in inspection.findings
-        ],
+        "findings": [{**asdict(f), "kind": str(f.kind)} for f in inspection.findings],
+        "novelty": inspection.novelty,
         "inspection_ms": sum(ms for ms in steps if ms is not None),
     }
 

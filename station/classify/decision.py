@@ -1,9 +1,17 @@
-"""Scores and thresholds to findings and verdict; pure."""
+"""Scores, defect maps and thresholds to findings and verdict; pure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi
+from math import exp, log, pi
 
-from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, SegmentScores
+from station.classify.extent import Extent, Map, extents, whole_map
+from station.domain import SEGMENT_DEG, SEGMENTS, STRIP_COLUMNS, STRIP_ROWS, Finding, Reason, Ring, SegmentScores
+
+KINDS = (Reason.HOLE, Reason.MISSING_WELD)
+"""Kinds of defect, in the order of the map's channels."""
+JOIN_MM = {Reason.HOLE: 0.0, Reason.MISSING_WELD: 1.0}
+"""A missing weld whose joint is hard to see for less than this is one; two holes side by side are two."""
+DEG_PER_PX = 360.0 / STRIP_COLUMNS
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,33 +30,70 @@ def segment_kind(scores: SegmentScores, thresholds: Thresholds) -> Reason | None
     return Reason.MISSING_WELD if scores.missing_weld >= scores.hole else Reason.HOLE
 
 
-def findings(scores: tuple[SegmentScores, ...], thresholds: Thresholds, radius_mm: float) -> tuple[Finding, ...]:
-    """Defects, neighbouring segments of one kind merged, also over the seam from segment 20 to segment 0.
+def near_threshold(scores: SegmentScores, thresholds: Thresholds) -> bool:
+    """Whether a segment is neither clearly OK nor clearly NOK: a second look is worth its time."""
+    return any(t / 8 <= p < 1 - (1 - t) / 8 for p, t in ((scores.hole, thresholds.hole), (scores.missing_weld, thresholds.missing_weld)))
 
-    Angles are those of whole segments: a defect is placed to 17 degrees.
+
+def mean_of(views: Sequence[SegmentScores]) -> SegmentScores:
+    """Scores of a segment seen more than once: the mean of the logarithms, scaled to add up to 1."""
+    logs = [[log(max(p, 1e-9)) for p in (s.ok, s.hole, s.missing_weld)] for s in views]
+    ok, hole, gone = (exp(sum(column) / len(views)) for column in zip(*logs, strict=True))
+    return SegmentScores(ok / (ok + hole + gone), hole / (ok + hole + gone), gone / (ok + hole + gone))
+
+
+def findings(scores: Sequence[SegmentScores], maps: Map, thresholds: Thresholds, ring: Ring, um_per_px: float) -> tuple[Finding, ...]:
+    """Defects of the whole weld: the map's areas that reach into a refused segment of their kind, over crops and seam.
+
+    `maps` (21, 2, 32, 32) float32. A refused segment whose map shows nothing is a finding of its own, with the segment's angles
+    and neither width nor area; such neighbours of one kind are one. So every refused segment is in a finding.
     """
     kinds = [segment_kind(s, thresholds) for s in scores]
-    if len(kinds) != SEGMENTS:
-        raise ValueError(f"{len(kinds)} segments, needed {SEGMENTS}")
+    if len(kinds) != SEGMENTS or maps.shape[0] != SEGMENTS:
+        raise ValueError(f"{len(kinds)} segments with {maps.shape[0]} maps, needed {SEGMENTS}")
+    found: list[Finding] = []
+    unseen: list[Reason | None] = list(kinds)
+    for channel, kind in zip(whole_map(maps), KINDS, strict=True):
+        if kind not in kinds:
+            continue
+        for extent in extents(channel, JOIN_MM[kind] * 1000 / um_per_px):
+            if any(kinds[s] is kind for s in extent.segments):
+                found.append(_measured(kind, extent, scores, ring, um_per_px))
+                unseen = [None if s in extent.segments and k is kind else k for s, k in enumerate(unseen)]
+    found += _whole_segments(unseen, scores, ring, um_per_px)
+    return tuple(sorted(found, key=lambda f: f.start_deg))
+
+
+def _measured(kind: Reason, extent: Extent, scores: Sequence[SegmentScores], ring: Ring, um_per_px: float) -> Finding:
+    """Length along the weld at the defect's own radius. Width: of a hole from edge to edge, of a bare joint the mean."""
+    mm_per_px = um_per_px / 1000
+    radius_px = ring.radius_px + STRIP_ROWS / 2 - (extent.top_px + extent.bottom_px) / 2
+    columns = extent.end_px - extent.start_px
+    stretch = radius_px * 2 * pi / STRIP_COLUMNS
+    width_px = extent.bottom_px - extent.top_px if kind is Reason.HOLE else extent.area_px2 / columns
+    return Finding(
+        kind=kind,
+        start_deg=extent.start_px * DEG_PER_PX,
+        end_deg=extent.end_px * DEG_PER_PX,
+        length_mm=columns * stretch * mm_per_px,
+        score=max(scores[s].nok for s in extent.segments),
+        width_mm=width_px * mm_per_px,
+        area_mm2=extent.area_px2 * stretch * mm_per_px**2,
+    )
+
+
+def _whole_segments(kinds: Sequence[Reason | None], scores: Sequence[SegmentScores], ring: Ring, um_per_px: float) -> list[Finding]:
     starts = [i for i in range(SEGMENTS) if kinds[i] is not None and kinds[i - 1] != kinds[i]]
     if not starts and kinds[0] is not None:
         starts = [0]
     found = []
     for start in starts:
         kind = kinds[start]
-        if kind is None:
-            continue
         length = 1
         while length < SEGMENTS and kinds[(start + length) % SEGMENTS] == kind:
             length += 1
-        members = [scores[(start + i) % SEGMENTS] for i in range(length)]
-        found.append(
-            Finding(
-                kind=kind,
-                start_deg=start * SEGMENT_DEG,
-                end_deg=(start + length) * SEGMENT_DEG,
-                length_mm=length * SEGMENT_DEG * pi / 180 * radius_mm,
-                score=max(s.nok for s in members),
-            )
-        )
-    return tuple(found)
+        if kind is not None:
+            arc_mm = length * SEGMENT_DEG * pi / 180 * ring.radius_px * um_per_px / 1000
+            score = max(scores[(start + i) % SEGMENTS].nok for i in range(length))
+            found.append(Finding(kind, start * SEGMENT_DEG, (start + length) * SEGMENT_DEG, arc_mm, score))
+    return found

@@ -1,4 +1,4 @@
-"""Networks through onnxruntime; the only file that imports it: 21 crops to class probabilities, a band to ring offsets.
+"""Networks through onnxruntime; the station's only file that imports it: crops to scores and maps, a band to ring offsets.
 
 The classifier's file carries its contract in its metadata and is refused without it; the ring network's is known by its input.
 """
@@ -7,11 +7,13 @@ import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnxruntime as ort
 from numpy.typing import NDArray
 
+from station.classify.extent import CELLS
 from station.domain import SEGMENT_PX, Image, SegmentScores
 from station.errors import ModelError
 from station.vision.polar import COLUMNS, ROWS, SECTORS
@@ -19,7 +21,7 @@ from station.vision.polar import COLUMNS, ROWS, SECTORS
 Array = NDArray[np.float64]
 
 CLASSES = ("ok", "hole", "missing_weld")
-METADATA_KEYS = ("weldgate.classes", "weldgate.thresholds", "weldgate.data_hash", "weldgate.version")
+METADATA_KEYS = ("weldgate.classes", "weldgate.thresholds", "weldgate.novelty_limit", "weldgate.data_hash", "weldgate.version")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +33,49 @@ class ModelCard:
     """SHA-256 over the training labels and images."""
     hole_threshold: float
     missing_threshold: float
+    novelty_limit: float
+    """Distance of a part to the training images from which it is reported."""
     file_hash: str
     """SHA-256 of the file."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Judged:
+    """What the network says of K crops."""
+
+    scores: tuple[SegmentScores, ...]
+    maps: NDArray[np.float32]
+    """Share of each cell that a hole or a missing weld covers, (K, 2, 32, 32)."""
+    distances: NDArray[np.float32]
+    """Mean squared distance of the features to those of the training crops, (K,); 1 for these."""
+
+
+class Network:
+    """An ONNX file, loaded."""
+
+    def __init__(self, path: Path, threads: int = 2) -> None:
+        """Raises ModelError if the file is missing or damaged."""
+        try:
+            blob = path.read_bytes()
+        except OSError as error:
+            raise ModelError(f"{path}: model cannot be read ({error.strerror}); name a weldgate .onnx file in the settings") from None
+        options = ort.SessionOptions()
+        options.intra_op_num_threads = threads
+        options.inter_op_num_threads = 1
+        options.log_severity_level = 4
+        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+        try:
+            self.session = ort.InferenceSession(blob, options, providers=["CPUExecutionProvider"])
+        except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
+            raise ModelError(f"{path}: not a readable ONNX model ({str(error).splitlines()[0][:120]}); restore the file") from None
+        self.file_hash = hashlib.sha256(blob).hexdigest()
+
+    def run(self, outputs: tuple[str, ...], inputs: dict[str, NDArray[Any]]) -> list[NDArray[np.float32]]:
+        """The named outputs. Raises ModelError."""
+        try:
+            return [np.asarray(answer, np.float32) for answer in self.session.run(outputs, inputs)]
+        except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
+            raise ModelError(f"inference failed: {str(error).splitlines()[0][:120]}") from None
 
 
 class Classifier:
@@ -40,17 +83,20 @@ class Classifier:
 
     def __init__(self, path: Path, threads: int = 2) -> None:
         """Load and warm up. Raises ModelError if the file is missing, damaged or not one of weldgate's."""
-        blob, self._session = _open(path, threads)
-        self.card = _card(path, blob, self._session)
+        self._network = Network(path, threads)
+        self.card = _card(path, self._network)
         self(np.zeros((1, SEGMENT_PX, SEGMENT_PX), np.uint8))
 
-    def __call__(self, crops: Image) -> tuple[SegmentScores, ...]:
-        """Scores of crops (K, 128, 128) uint8. Raises ModelError if the answer is not K finite probabilities."""
-        p = _run(self._session, "probabilities", {"crops": crops[:, None]})
-        fit = p.shape == (len(crops), 3) and bool(((p >= 0) & (p <= 1)).all()) and bool((np.abs(p.sum(axis=1) - 1) <= 1e-3).all())
+    def __call__(self, crops: Image) -> Judged:
+        """Judge crops (K, 128, 128) uint8. Raises ModelError if the answer is not K times finite probabilities."""
+        p, maps, distances = self._network.run(("probabilities", "maps", "distances"), {"crops": crops[:, None]})
+        fit = p.shape == (len(crops), 3) and maps.shape == (len(crops), 2, CELLS, CELLS) and distances.shape == (len(crops),)
         if not fit:
-            raise ModelError(f"inference gave no probabilities (shape {p.shape})")
-        return tuple(SegmentScores(float(a), float(b), float(c)) for a, b, c in p)
+            raise ModelError(f"inference gave no probabilities, maps and distances (shapes {p.shape}, {maps.shape}, {distances.shape})")
+        sound = all(((a >= 0) & (a <= 1)).all() for a in (p, maps)) and bool((np.abs(p.sum(axis=1) - 1) <= 1e-3).all())
+        if not (sound and np.isfinite(distances).all()):
+            raise ModelError("inference gave numbers that are no probabilities")
+        return Judged(tuple(SegmentScores(float(a), float(b), float(c)) for a, b, c in p), maps, distances)
 
 
 class RingNetwork:
@@ -58,9 +104,9 @@ class RingNetwork:
 
     def __init__(self, path: Path, threads: int = 2) -> None:
         """Load and warm up. Raises ModelError if the file is missing, damaged or another network."""
-        blob, self._session = _open(path, threads)
-        self.file_hash = hashlib.sha256(blob).hexdigest()
-        _check_input(path, self._session, "bands", [1, ROWS, COLUMNS])
+        self._network = Network(path, threads)
+        self.file_hash = self._network.file_hash
+        _check_input(path, self._network.session, "bands", [1, ROWS, COLUMNS])
         self(np.zeros((ROWS, COLUMNS), np.uint8))
 
     def __call__(self, band: Image) -> tuple[Array, Array]:
@@ -74,34 +120,11 @@ class RingNetwork:
 
     def sectors(self, bands: Image) -> Array:
         """What the network itself says of bands (K, 192, 672) uint8: offsets and presences (K, 2, 84)."""
-        answer = _run(self._session, "sectors", {"bands": bands[:, None]})
+        (found,) = self._network.run(("sectors",), {"bands": bands[:, None]})
+        answer = np.asarray(found, np.float64)
         if answer.shape != (len(bands), 2, SECTORS) or not np.isfinite(answer).all():
             raise ModelError(f"the ring network gave no offsets (shape {answer.shape})")
         return answer
-
-
-def _open(path: Path, threads: int) -> tuple[bytes, ort.InferenceSession]:
-    try:
-        blob = path.read_bytes()
-    except OSError as error:
-        raise ModelError(f"{path}: model cannot be read ({error.strerror}); name a weldgate .onnx file in the settings") from None
-    options = ort.SessionOptions()
-    options.intra_op_num_threads = threads
-    options.inter_op_num_threads = 1
-    options.log_severity_level = 4
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    try:
-        return blob, ort.InferenceSession(blob, options, providers=["CPUExecutionProvider"])
-    except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
-        raise ModelError(f"{path}: not a readable ONNX model ({str(error).splitlines()[0][:120]}); restore the file") from None
-
-
-def _run(session: ort.InferenceSession, output: str, inputs: dict[str, Image]) -> Array:
-    try:
-        (answer,) = session.run([output], inputs)
-    except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
-        raise ModelError(f"inference failed: {str(error).splitlines()[0][:120]}") from None
-    return np.asarray(answer, np.float64)
 
 
 def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: list[int]) -> None:
@@ -111,22 +134,27 @@ def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: li
         raise ModelError(f"{path}: input is {inputs[0].name} {inputs[0].type} {got}, needed {name} tensor(uint8) {shape}")
 
 
-def _card(path: Path, blob: bytes, session: ort.InferenceSession) -> ModelCard:
+def _card(path: Path, network: Network) -> ModelCard:
+    session = network.session
     metadata = session.get_modelmeta().custom_metadata_map
     missing = [key for key in METADATA_KEYS if key not in metadata]
     if missing:
         raise ModelError(f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; make one with weldgate-models train")
     _check_input(path, session, "crops", [1, SEGMENT_PX, SEGMENT_PX])
-    if "probabilities" not in [o.name for o in session.get_outputs()]:
-        raise ModelError(f"{path}: has no output 'probabilities'")
+    lacking = {"probabilities", "maps", "distances"} - {o.name for o in session.get_outputs()}
+    if lacking:
+        raise ModelError(f"{path}: has no output {', '.join(sorted(lacking))}; make one with weldgate-models train")
     try:
         classes = tuple(json.loads(metadata["weldgate.classes"]))
         thresholds = json.loads(metadata["weldgate.thresholds"])
         hole, gone = float(thresholds["hole"]), float(thresholds["missing_weld"])
+        limit = float(json.loads(metadata["weldgate.novelty_limit"]))
     except (ValueError, KeyError, TypeError):
         raise ModelError(f"{path}: metadata cannot be read; make it again with weldgate-models train") from None
     if classes != CLASSES:
         raise ModelError(f"{path}: classes are {classes}, needed {CLASSES}")
     if not (0 < hole < 1 and 0 < gone < 1):
         raise ModelError(f"{path}: thresholds {thresholds} must lie between 0 and 1")
-    return ModelCard(metadata["weldgate.version"], metadata["weldgate.data_hash"], hole, gone, hashlib.sha256(blob).hexdigest())
+    if not 0 < limit < float("inf"):
+        raise ModelError(f"{path}: novelty limit {limit} must be above 0")
+    return ModelCard(metadata["weldgate.version"], metadata["weldgate.data_hash"], hole, gone, limit, network.file_hash)

@@ -16,7 +16,7 @@ from station.panel.strip_view import StripView
 from station.panel.verdict_lamp import VerdictLamp
 
 AGE_MS = 200
-FACTS = ("part", "serial", "trigger", "inspection", "cycle", "camera", "parts", "OK", "NOK", "not judged", "yield")
+FACTS = ("part", "serial", "trigger", "inspection", "cycle", "picture", "camera", "parts", "OK", "NOK", "not judged", "yield")
 
 
 class Window(QMainWindow):
@@ -49,8 +49,8 @@ class Window(QMainWindow):
         side = QVBoxLayout()
         side.addWidget(self._badge)
         side.addWidget(self._lamp, 2)
-        side.addWidget(self._card(FACTS[:6]))
-        side.addWidget(self._card(FACTS[6:]))
+        side.addWidget(self._card(FACTS[:7]))
+        side.addWidget(self._card(FACTS[7:]))
         top = QHBoxLayout()
         top.addWidget(self._live, 5)
         column = QWidget()
@@ -100,6 +100,7 @@ class Window(QMainWindow):
         self._facts["serial"].setText(record.serial or "–")
         self._facts["trigger"].setText(str(record.trigger_id))
         self._facts["inspection"].setText(f"{record.grabbed_at:%H:%M:%S} UTC")
+        self._facts["picture"].setText("UNLIKE TRAINING" if event.novel else "known")
         self._facts["cycle"].setText(f"{sum(ms for ms in steps if ms is not None):.0f} ms")
         self._live.show_part(event)
         self._strip.show_part(event)

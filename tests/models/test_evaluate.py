@@ -1,19 +1,106 @@
+import json
+from dataclasses import replace
 from pathlib import Path
 
-from models.evaluate import evaluate
+import cv2
+import numpy as np
+import pytest
+
+import models.train
+from models.__main__ import main
+from models.drift import DRIFTS, STRENGTHS, drift, write_drift
+from models.errors import LearningError
+from models.evaluate import evaluate_lot
+from models.export import read_network
+from models.first_day import first_day
+from models.report import lines, summary, write_report
+from models.train import fine_tune
 from station.classify.onnx import Classifier, RingNetwork
 from station.inspection import Inspector
 from station.settings import ModelSettings, QualitySettings, WeldSettings
 from tests.conftest import MODEL, RING_MODEL
-from tests.parts import FRAMES, labels
+from tests.parts import FRAMES, label_with, labels
 
 
-def test_the_shipped_frames_are_evaluated_right(tmp_path: Path) -> None:
-    (tmp_path / "frames").symlink_to(FRAMES)
-    (tmp_path / "labels.json").symlink_to(FRAMES / "labels.json")
-    inspector = Inspector(RingNetwork(RING_MODEL), Classifier(MODEL), WeldSettings(), QualitySettings(), ModelSettings())
-    outcome = evaluate(tmp_path, inspector, lambda: None)
-    assert (outcome.parts, outcome.right, outcome.escapes, outcome.not_judged) == (len(labels()), len(labels()), [], [])
-    assert outcome.segments["tp"] > 20
-    assert max(outcome.center_error_px) < 1.0
-    assert "0 escapes" in outcome.lines()[0]
+@pytest.fixture(scope="module")
+def inspector() -> Inspector:
+    return Inspector(RingNetwork(RING_MODEL), Classifier(MODEL), WeldSettings(), QualitySettings(), ModelSettings())
+
+
+@pytest.fixture
+def lot(tmp_path: Path) -> Path:
+    folder = tmp_path / "lot"
+    folder.mkdir()
+    (folder / "frames").symlink_to(FRAMES)
+    (folder / "labels.json").symlink_to(FRAMES / "labels.json")
+    return folder
+
+
+def test_the_shipped_frames_are_evaluated_right(lot: Path, inspector: Inspector, tmp_path: Path) -> None:
+    found = evaluate_lot(lot, inspector)
+    figures = summary(found)
+    parts = figures["parts"]
+    assert (parts["count"], parts["right"], parts["escapes"], parts["not_judged"]) == (len(labels()), len(labels()), [], [])
+    assert figures["segments"]["tp"] > 20
+    assert parts["center_error_px"][1] < 6.0
+    assert "0 escapes" in lines(found)[0]
+    assert sum(row["of"] for row in figures["defects"]) == sum(len(item["defects"]) for item in labels())
+    write_report(found, tmp_path / "report", "four parts", {"data": "shipped"})
+    assert (tmp_path / "report" / "report.html").stat().st_size > 50_000
+
+
+def test_an_unreadable_frame_is_named_before_any_is_judged(lot: Path, inspector: Inspector, tmp_path: Path) -> None:
+    (lot / "frames").unlink()
+    (lot / "frames").mkdir()
+    for item in labels():
+        (lot / "frames" / item["frame"]).write_bytes(b"")
+    with pytest.raises(LearningError, match=f"{len(labels())} wrong"):
+        evaluate_lot(lot, inspector)
+
+
+def test_drifts_begin_with_the_lot_as_it_is(lot: Path, inspector: Inspector, tmp_path: Path) -> None:
+    steps = drift(lot, inspector.classifier)
+    assert len(steps) == len(DRIFTS) * len(STRENGTHS)
+    untouched = [s for s in steps if s.strength == 0]
+    assert len({(s.segments, s.alarms) for s in untouched}) == 1
+    assert all(s.segments.f2 < untouched[0].segments.f2 for s in steps if s.drift == "glass gets hazy" and s.strength == 1)
+    write_drift(steps, tmp_path / "drift")
+    assert len(json.loads((tmp_path / "drift" / "drift.json").read_text())) == len(steps)
+    assert cv2.imread(str(tmp_path / "drift" / "drift.png")) is not None
+
+
+def test_the_first_day_takes_ok_parts_and_names_others(inspector: Inspector) -> None:
+    good = [FRAMES / label_with("OK")["frame"]]
+    found = first_day(good, inspector, inspector.card.novelty_limit)
+    assert found.good
+    assert found.lines()[-1] == "ready"
+    bad = first_day([*good, FRAMES / label_with("hole")["frame"]], inspector, inspector.card.novelty_limit)
+    assert not bad.good
+    assert any(label_with("hole")["frame"] in line and "refused" in line for line in bad.lines())
+
+
+def test_first_day_says_when_images_are_unlike_the_training(inspector: Inspector, capsys: pytest.CaptureFixture[str]) -> None:
+    found = first_day([FRAMES / label_with("OK")["frame"]], inspector, 0.01)
+    assert not found.good
+    assert any("unlike the training images" in line for line in found.lines())
+    assert main(["first-day", str(FRAMES / label_with("hole")["frame"])]) == 1
+    assert capsys.readouterr().out.endswith("not ready\n")
+
+
+def test_a_shipped_network_can_be_trained_further_on_a_lines_own_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "line"
+    (folder / "frames").mkdir(parents=True)
+    entries = []
+    for number in range(12):
+        item = dict(labels()[number % 4])
+        name = f"{number}.png"
+        (folder / "frames" / name).symlink_to(FRAMES / item["frame"])
+        entries.append({**item, "frame": name})
+    (folder / "labels.json").write_text(json.dumps({"frames": entries}))
+    monkeypatch.setattr(models.train, "FINE_TUNING", replace(models.train.FINE_TUNING, steps=6, batch=16))
+    card = fine_tune(folder, MODEL, tmp_path / "out", "0.2-line", 0, lambda _: None)
+    assert card["provenance"].startswith("Fine-tuned")
+    assert card["held_out"]["f2"] > 0.8
+    before, after = read_network(MODEL), read_network(tmp_path / "out" / "weldgate.onnx")
+    gaps = [float((a - b).detach().abs().max()) for a, b in zip(before.parameters(), after.parameters(), strict=True)]
+    assert 0 < np.max(gaps) < 0.2

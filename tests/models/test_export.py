@@ -6,22 +6,57 @@ import torch
 
 from models import export as export_file
 from models.errors import LearningError
-from models.export import export, export_ring
-from models.network import WeldNet
+from models.export import Contract, export, export_ring, read_network
+from models.network import FEATURES, WeldNet
 from models.ring import RingNet
+from models.ring_pair import pair_rings
+from station.classify.decision import Thresholds
 from station.classify.onnx import Classifier, RingNetwork
+from tests.conftest import RING_MODEL
+
+
+def contract() -> Contract:
+    rng = np.random.default_rng(1)
+    return Contract("1.2", "d" * 64, Thresholds(0.3, 0.2), rng.normal(size=FEATURES), np.eye(FEATURES) * 0.5, 2.5, (0.5, -1.0, -0.5))
+
+
+def trained() -> WeldNet:
+    """Random weights, and running means that are not those of a fresh network."""
+    torch.manual_seed(1)
+    network = WeldNet().train()
+    with torch.no_grad():
+        network(torch.randint(0, 256, (8, 1, 128, 128), dtype=torch.uint8))
+    return network.eval()
 
 
 def test_the_file_answers_like_the_network(tmp_path: Path) -> None:
-    torch.manual_seed(1)
-    network = WeldNet()
-    export(network, tmp_path / "a.onnx", "1.2", "d" * 64, 0.3, 0.2)
+    network, says = trained(), contract()
+    export(network, tmp_path / "a.onnx", says)
     classifier = Classifier(tmp_path / "a.onnx")
-    assert (classifier.card.version, classifier.card.hole_threshold, classifier.card.missing_threshold) == ("1.2", 0.3, 0.2)
+    card = classifier.card
+    assert (card.version, card.hole_threshold, card.missing_threshold, card.novelty_limit) == ("1.2", 0.3, 0.2, 2.5)
     crops = np.random.default_rng(5).integers(0, 256, (3, 128, 128), dtype=np.uint8)
     with torch.no_grad():
-        wanted = torch.softmax(network.eval()(torch.from_numpy(crops[:, None])), dim=1).numpy()
-    assert np.array([(s.ok, s.hole, s.missing_weld) for s in classifier(crops)]) == pytest.approx(wanted, abs=1e-4)
+        logits, where, features = network(torch.from_numpy(crops[:, None]))
+    judged = classifier(crops)
+    wanted = torch.softmax(logits + torch.tensor(says.prior_shift), 1).numpy()
+    assert np.array([(s.ok, s.hole, s.missing_weld) for s in judged.scores]) == pytest.approx(wanted, abs=1e-4)
+    assert judged.maps == pytest.approx(torch.sigmoid(where).numpy(), abs=1e-4)
+    away = (features.numpy() - says.mean) @ says.whitening
+    assert judged.distances == pytest.approx((away**2).mean(axis=1), rel=1e-3)
+
+
+def test_the_network_comes_back_from_its_file(tmp_path: Path) -> None:
+    network = trained()
+    export(network, tmp_path / "a.onnx", contract())
+    crops = torch.randint(0, 256, (3, 1, 128, 128), dtype=torch.uint8)
+    with torch.no_grad():
+        assert torch.allclose(network(crops)[0], read_network(tmp_path / "a.onnx")(crops)[0], atol=1e-4)
+
+
+def test_only_a_classifier_can_be_trained_further() -> None:
+    with pytest.raises(Exception, match=r"ring\.onnx: not a weldgate model"):
+        read_network(RING_MODEL)
 
 
 def test_the_ring_file_answers_like_the_network(tmp_path: Path) -> None:
@@ -34,13 +69,24 @@ def test_the_ring_file_answers_like_the_network(tmp_path: Path) -> None:
 def test_a_file_that_differs_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(export_file, "TOLERANCE", -1.0)
     with pytest.raises(LearningError, match="nothing kept"):
-        export(WeldNet(), tmp_path / "a.onnx", "1", "d", 0.5, 0.5)
+        export(WeldNet(), tmp_path / "a.onnx", contract())
     assert list(tmp_path.iterdir()) == []
 
 
 def test_brightness_and_contrast_are_taken_out_inside_the_graph() -> None:
-    torch.manual_seed(0)
-    network = WeldNet().eval()
+    network = trained()
     crop = torch.from_numpy(np.random.default_rng(5).integers(40, 100, (1, 1, 128, 128), dtype=np.uint8))
     with torch.no_grad():
-        assert torch.allclose(network(crop), network(crop * 2), atol=0.15)
+        assert torch.allclose(network(crop)[0], network(crop * 2)[0], atol=0.15)
+
+
+def test_a_pair_of_ring_networks_answers_as_their_mean(tmp_path: Path) -> None:
+    torch.manual_seed(3)
+    export_ring(RingNet(), tmp_path / "other.onnx", "7", "e" * 64)
+    pair_rings(RING_MODEL, tmp_path / "other.onnx", tmp_path / "pair", "8")
+    band = np.random.default_rng(4).integers(0, 256, (1, 192, 672), dtype=np.uint8)
+    (o1, p1), (o2, p2) = (RingNetwork(path).sectors(band)[0] for path in (RING_MODEL, tmp_path / "other.onnx"))
+    offset, presence = RingNetwork(tmp_path / "pair" / "ring.onnx").sectors(band)[0]
+    assert presence == pytest.approx((p1 + p2) / 2, abs=1e-4)
+    assert offset == pytest.approx((3 * p1 * o1 + p2 * o2) / (3 * p1 + p2), abs=1e-3)
+    assert "e" * 64 in (tmp_path / "pair" / "RING.md").read_text()

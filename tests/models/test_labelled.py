@@ -4,10 +4,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models.augment import augment
-from models.data import HOLE, IGNORED, MISSING, OK, Defect, crop_label, read_lot, split_by_part
+from models.crops import HOLE, IGNORED, MISSING, OK
 from models.errors import LearningError
-from station.domain import SEGMENT_DEG
+from models.labelled import Defect, LabelledStrip, crop_label, read_labels, read_lot, split_by_part, station_crops, window_crops
+from station.domain import SEGMENT_DEG, STRIP_COLUMNS
 from tests.parts import FRAMES
 
 
@@ -29,47 +29,97 @@ def test_labels_of_the_first_crop(defects: tuple[Defect, ...], wanted: int) -> N
     assert crop_label(defects, 0.0, SEGMENT_DEG) == wanted
 
 
+def strips(count: int) -> list[LabelledStrip]:
+    """Strips with a hole, a missing weld or nothing, in turn."""
+    rng = np.random.default_rng(0)
+    kinds = ((), (Defect(HOLE, 40, 44),), (Defect(MISSING, 350, 380),))
+    return [LabelledStrip(f"p{i}", rng.integers(0, 256, (128, STRIP_COLUMNS), dtype=np.uint8), kinds[i % 3]) for i in range(count)]
+
+
+def test_the_window_slides_by_ten_pixels_and_round_the_seam() -> None:
+    found = window_crops(strips(3), 10, None)
+    assert len(found) > 3 * 260 - 60
+    holes = found.pick(found.labels == HOLE)
+    assert set(holes.parts) == {"p1"}
+    assert 10 <= len(holes) <= 17  # 128 px of crop and a hole of 30 px, at least a fifth of it inside
+    assert not found.mapped.any()
+
+
+def test_balancing_repeats_the_rarer_defect_and_cuts_the_good_ones() -> None:
+    found = window_crops(strips(3), 10, np.random.default_rng(1))
+    counts = [found.count(k) for k in (OK, HOLE, MISSING)]
+    assert counts[HOLE] == counts[MISSING] == counts[OK] // 2
+
+
+def test_kinds_that_are_lacking_are_named() -> None:
+    with pytest.raises(LearningError, match="show no missing_weld"):
+        window_crops(strips(2), 10, np.random.default_rng(1))
+
+
+def test_the_stations_crops_leave_open_ones_out() -> None:
+    found = station_crops(strips(3))
+    assert len(found) <= 63
+    assert found.count(HOLE) == 1
+    assert found.count(MISSING) >= 2
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_split_by_part_shares_no_part_and_gives_each_side_its_defects(seed: int) -> None:
+    sides = split_by_part(strips(60), seed)
+    names = [{s.part for s in side} for side in sides]
+    assert [len(n) for n in names] == [42, 9, 9]
+    assert not names[0] & names[1] | names[0] & names[2] | names[1] & names[2]
+    assert all(3 <= sum(bool(s.defects) for s in side) for side in sides)
+
+
+def test_too_few_parts_are_refused() -> None:
+    with pytest.raises(LearningError, match="too few"):
+        split_by_part(strips(2), 0)
+
+
 def lot(folder: Path, **changes: object) -> Path:
-    labels = json.loads((FRAMES / "labels.json").read_text())
-    item = {**labels["frames"][0], **changes}
+    """A lot of one entry, changed."""
+    item = {**json.loads((FRAMES / "labels.json").read_text())["frames"][0], **changes}
     (folder / "frames").mkdir()
+    (folder / "frames" / "bad.png").write_bytes(b"x")
+    for image in FRAMES.glob("*.png"):
+        (folder / "frames" / image.name).symlink_to(image)
     (folder / "labels.json").write_text(json.dumps({"frames": [item]}))
     return folder
 
 
-def test_strips_of_one_part_stay_on_one_side(tmp_path: Path, rng: np.random.Generator) -> None:
-    folder = lot(tmp_path)
-    labels = json.loads((folder / "labels.json").read_text())
-    name = labels["frames"][0]["frame"]
-    (folder / "frames" / name).symlink_to(FRAMES / name)
-    (folder / "frames" / "b.png").symlink_to(FRAMES / name)
-    labels["frames"].append({**labels["frames"][0], "frame": "b.png"})
-    (folder / "labels.json").write_text(json.dumps(labels))
-    training, held = split_by_part(read_lot(folder, 2, rng), 0.5)
-    assert len(training) == len(held) == 3
-    assert not {s.part for s in training} & {s.part for s in held}
-    assert (training[0].strip != training[1].strip).any()
+def test_a_lot_is_cut_at_its_labelled_rings(tmp_path: Path) -> None:
+    (strip,) = read_lot(lot(tmp_path))
+    assert strip.strip.shape == (128, STRIP_COLUMNS)
+    assert (strip.crop(STRIP_COLUMNS - 64)[:, 64:] == strip.strip[:, :64]).all()
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"), [({"frame": "absent.png"}, "1 images are missing"), ({"frame": "bad.png"}, "not a readable image")]
+    ("changes", "said"),
+    [
+        ({"frame": "absent.png"}, "absent.png: the image is missing"),
+        ({"frame": "bad.png"}, "not a readable image"),
+        ({"radius": -1}, "centre and radius"),
+        ({"center": [5.0, 5.0]}, "not wholly in view"),
+        ({"verdict": "NOK", "defects": [{"kind": "crack", "angle_deg": [1, 2]}]}, "unknown kind crack"),
+        ({"verdict": "NOK", "defects": [{"kind": "hole", "angle_deg": [9, 2]}]}, "angle_deg"),
+        ({"verdict": "NOK", "defects": []}, "does not fit 0 defects"),
+        ({"defects": None}, "lacks or garbles"),
+    ],
 )
-def test_wrong_lots_are_refused(changes: dict[str, object], said: str, tmp_path: Path, rng: np.random.Generator) -> None:
-    folder = lot(tmp_path, **changes)
-    (folder / "frames" / "bad.png").write_bytes(b"x")
+def test_wrong_lots_are_refused(changes: dict[str, object], said: str, tmp_path: Path) -> None:
     with pytest.raises(LearningError, match=said):
-        read_lot(folder, 0, rng)
+        read_lot(lot(tmp_path, **changes))
 
 
-def test_no_lot_says_how_to_make_one(tmp_path: Path, rng: np.random.Generator) -> None:
+def test_a_part_labelled_twice_is_refused(tmp_path: Path) -> None:
+    folder = lot(tmp_path)
+    content = json.loads((folder / "labels.json").read_text())
+    (folder / "labels.json").write_text(json.dumps({"frames": content["frames"] * 2}))
+    with pytest.raises(LearningError, match="labelled twice"):
+        read_labels(folder)
+
+
+def test_no_lot_says_how_to_make_one(tmp_path: Path) -> None:
     with pytest.raises(LearningError, match="weldgate-synth part"):
-        read_lot(tmp_path, 0, rng)
-
-
-def test_augment_keeps_form_and_is_drawn_from_the_generator() -> None:
-    crop = np.random.default_rng(1).integers(0, 256, (128, 128), dtype=np.uint8)
-    first, second = augment(crop, np.random.default_rng(2)), augment(crop, np.random.default_rng(2))
-    assert first.shape == crop.shape
-    assert first.dtype == np.uint8
-    assert (first == second).all()
-    assert (first != augment(crop, np.random.default_rng(3))).any()
+        read_lot(tmp_path)

@@ -49,7 +49,7 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
     item = label_with("hole")
     judged = nok_inspection()
     ring = Ring(item["center"][0], item["center"][1], item["radius"], 1.0)
-    event = PartEvent(record(judged, 12), tuple(i == 3 for i in range(21)), True, 90.0, 1.0)
+    event = PartEvent(record(judged, 12), tuple(i == 3 for i in range(21)), True, True, 90.0, 1.0)
     preview = make_preview(12, frames[item["frame"]], ring)
 
     def told() -> None:
@@ -58,6 +58,7 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
         publisher.show(preview)
         assert window._facts["part"].text() == "no. 12"
         assert window._facts["parts"].text() == "4"
+        assert window._facts["picture"].text() == "UNLIKE TRAINING"
         assert window._lamp._lamp.word == "NOK"
         assert window._live._preview is not None
 

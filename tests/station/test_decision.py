@@ -1,43 +1,104 @@
-from hypothesis import given
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from station.classify.decision import Thresholds, findings, segment_kind
-from station.domain import SEGMENT_DEG, SEGMENTS, Reason, SegmentScores
+from station.classify.decision import Thresholds, findings, mean_of, near_threshold, segment_kind
+from station.classify.extent import CELL_PX, CELLS, Map
+from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, Ring, SegmentScores
 
 OK, HOLE, GONE = SegmentScores(0.98, 0.01, 0.01), SegmentScores(0.1, 0.8, 0.1), SegmentScores(0.1, 0.1, 0.8)
 LIMITS = Thresholds(0.5, 0.5)
+RING = Ring(600.0, 600.0, 428.0, 1.0)
+UM = 13.0
+BLIND = np.zeros((SEGMENTS, 2, CELLS, CELLS), np.float32)
 
 
 def row(**bad: SegmentScores) -> tuple[SegmentScores, ...]:
     return tuple(bad.get(f"s{i}", OK) for i in range(SEGMENTS))
 
 
-def test_neighbours_merge_over_the_seam() -> None:
-    (found,) = findings(row(s20=GONE, s0=GONE, s1=GONE), LIMITS, 5.5)
+def judged(scores: tuple[SegmentScores, ...], maps: Map = BLIND) -> tuple[Finding, ...]:
+    return findings(scores, maps, LIMITS, RING, UM)
+
+
+def test_neighbours_the_map_is_blind_to_merge_over_the_seam() -> None:
+    (found,) = judged(row(s20=GONE, s0=GONE, s1=GONE))
     assert (found.kind, found.start_deg, found.end_deg) == (Reason.MISSING_WELD, 20 * SEGMENT_DEG, 23 * SEGMENT_DEG)
+    assert found.width_mm is None
+    assert found.area_mm2 is None
 
 
 def test_two_kinds_side_by_side_stay_two() -> None:
-    found = findings(row(s4=HOLE, s5=GONE), LIMITS, 5.5)
-    assert [f.kind for f in found] == [Reason.HOLE, Reason.MISSING_WELD]
+    assert [f.kind for f in judged(row(s4=HOLE, s5=GONE))] == [Reason.HOLE, Reason.MISSING_WELD]
 
 
 def test_all_round_is_one_finding_of_the_whole_circumference() -> None:
-    (found,) = findings((GONE,) * SEGMENTS, LIMITS, 5.0)
+    (found,) = judged((GONE,) * SEGMENTS)
     assert (found.start_deg, found.end_deg) == (0.0, 360.0)
-    assert abs(found.length_mm - 2 * 3.14159265 * 5.0) < 1e-3
+    assert found.length_mm == pytest.approx(2 * pi * 428 * 0.013, rel=1e-6)
+
+
+def test_a_hole_is_measured_in_mm_at_its_own_radius() -> None:
+    maps = BLIND.copy()
+    maps[4, 0, 8:12, 10:20] = 1  # 16 px high, 40 columns long, above the middle: outside the centre line
+    (found,) = judged(row(s4=HOLE), maps)
+    radius_px = 428 + 64 - 10 * CELL_PX
+    assert found.width_mm == pytest.approx(0.208)
+    assert found.length_mm == pytest.approx(40 * 2 * pi * radius_px / 2688 * 0.013)
+    assert found.area_mm2 == pytest.approx(found.width_mm * found.length_mm)
+    assert found.start_deg == pytest.approx((4 * 128 + 40) * 360 / 2688)
+
+
+def test_one_defect_over_two_crops_is_one_finding_also_over_the_seam() -> None:
+    for left, right in ((4, 5), (20, 0)):
+        maps = BLIND.copy()
+        maps[left, 0, 14:18, 24:] = 1
+        maps[right, 0, 14:18, :8] = 1
+        (found,) = judged(row(**{f"s{left}": HOLE}), maps)  # the other half lies in a segment that passed
+        assert found.end_deg - found.start_deg == pytest.approx(64 * 360 / 2688)
+
+
+def test_a_map_in_a_segment_that_passed_is_no_finding() -> None:
+    maps = BLIND.copy()
+    maps[4, 0, 14:18, 10:14] = 1
+    assert judged(row(), maps) == ()
 
 
 def test_a_segment_not_likelier_ok_than_not_is_nok_whatever_the_thresholds() -> None:
     assert segment_kind(SegmentScores(0.3, 0.4, 0.3), Thresholds(0.9, 0.9)) is Reason.HOLE
 
 
-@given(st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1)), min_size=SEGMENTS, max_size=SEGMENTS), st.floats(0.05, 0.95))
-def test_no_findings_means_every_segment_is_below_its_threshold(raw: list[tuple[float, float, float]], limit: float) -> None:
+SCORES = st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1)), min_size=SEGMENTS, max_size=SEGMENTS)
+
+
+@settings(deadline=None)
+@given(SCORES, st.floats(0.05, 0.95), st.integers(0, 2**31))
+def test_every_refused_segment_lies_in_a_finding_and_without_one_none_is_refused(
+    raw: list[tuple[float, float, float]], limit: float, seed: int
+) -> None:
     scores = tuple(SegmentScores(a / (a + b + c + 1e-9), b / (a + b + c + 1e-9), c / (a + b + c + 1e-9)) for a, b, c in raw)
+    rng = np.random.default_rng(seed)
+    maps = np.asarray((rng.random(BLIND.shape) > 0.97) * rng.random(BLIND.shape), np.float32)
     limits = Thresholds(limit, limit)
-    found = findings(scores, limits, 5.5)
-    covered = {i % SEGMENTS for f in found for i in range(round(f.start_deg / SEGMENT_DEG), round(f.end_deg / SEGMENT_DEG))}
-    assert covered == {i for i, s in enumerate(scores) if segment_kind(s, limits) is not None}
-    if not found:
-        assert all(s.hole < limit and s.missing_weld < limit and s.ok > max(s.hole, s.missing_weld) for s in scores)
+    found = findings(scores, maps, limits, RING, UM)
+    for index, s in enumerate(scores):
+        if segment_kind(s, limits) is not None:
+            start, end = index * SEGMENT_DEG, (index + 1) * SEGMENT_DEG
+            assert any(f.start_deg + k < end and f.end_deg + k > start for f in found for k in (-360, 0, 360))
+    assert bool(found) == any(segment_kind(s, limits) is not None for s in scores)
+
+
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=4))
+def test_several_looks_lie_between_the_best_and_the_worst(nok: list[float]) -> None:
+    again = mean_of([SegmentScores(1 - p, p, 0.0) for p in nok])
+    assert again.ok + again.hole + again.missing_weld == pytest.approx(1)
+    assert min(nok) - 1e-6 <= again.nok <= max(nok) + 1e-6
+
+
+def test_clear_segments_get_no_second_look() -> None:
+    assert not near_threshold(SegmentScores(0.98, 0.01, 0.01), LIMITS)
+    assert not near_threshold(SegmentScores(0.01, 0.98, 0.01), LIMITS)
+    assert near_threshold(SegmentScores(0.6, 0.39, 0.01), LIMITS)

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from station.classify.onnx import Classifier, RingNetwork
-from station.domain import SEGMENTS, Image, Inspection, Reason, SegmentScores, Verdict
+from station.classify.onnx import Classifier, Judged, RingNetwork
+from station.domain import SEGMENTS, Image, Inspection, Reason, Verdict
 from station.errors import ModelError
 from station.inspection import Inspector
 from station.settings import ModelSettings, QualitySettings, WeldSettings
@@ -47,7 +47,7 @@ def test_wrong_exposure_is_not_judged(gain: float, reason: set[Reason], frames: 
 def test_a_failing_model_is_never_ok(
     frames: dict[str, Image], ring_network: RingNetwork, classifier: Classifier, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(_self: Classifier, _crops: Image) -> tuple[SegmentScores, ...]:
+    def fail(_self: Classifier, _crops: Image) -> Judged:
         raise ModelError("out of memory")
 
     inspector = Inspector(ring_network, classifier, WeldSettings(), QualitySettings(), ModelSettings())

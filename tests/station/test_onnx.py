@@ -4,7 +4,7 @@ import numpy as np
 import onnx
 import pytest
 
-from station.classify.onnx import Classifier
+from station.classify.onnx import METADATA_KEYS, Classifier
 from station.errors import ModelError
 from tests.conftest import MODEL
 
@@ -18,7 +18,9 @@ def test_the_shipped_model_says_what_it_is(classifier: Classifier) -> None:
 def test_one_crop_and_many_give_the_same(classifier: Classifier, rng: np.random.Generator) -> None:
     crops = rng.integers(0, 256, (21, 128, 128), dtype=np.uint8)
     many, one = classifier(crops), classifier(crops[4:5])
-    assert many[4].nok == pytest.approx(one[0].nok, abs=1e-5)
+    assert many.scores[4].nok == pytest.approx(one.scores[0].nok, abs=1e-5)
+    assert many.maps[4] == pytest.approx(one.maps[0], abs=1e-4)
+    assert many.distances[4] == pytest.approx(one.distances[0], rel=1e-3)
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
@@ -34,7 +36,7 @@ def test_a_damaged_file_is_refused(keep: int, tmp_path: Path) -> None:
         Classifier(path)
 
 
-@pytest.mark.parametrize("key", ["weldgate.classes", "weldgate.thresholds", "weldgate.data_hash", "weldgate.version"])
+@pytest.mark.parametrize("key", METADATA_KEYS)
 def test_a_model_without_its_metadata_is_refused(key: str, tmp_path: Path) -> None:
     model = onnx.load(str(MODEL))
     kept = [m for m in model.metadata_props if m.key != key]
@@ -51,6 +53,7 @@ def test_a_model_without_its_metadata_is_refused(key: str, tmp_path: Path) -> No
         ("weldgate.classes", '["a", "b"]', "classes"),
         ("weldgate.thresholds", "{}", "cannot be read"),
         ("weldgate.thresholds", '{"hole": 2, "missing_weld": 0.5}', "between 0 and 1"),
+        ("weldgate.novelty_limit", "-1", "above 0"),
     ],
 )
 def test_foreign_metadata_is_refused(key: str, value: str, said: str, tmp_path: Path) -> None:

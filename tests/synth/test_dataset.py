@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.data import Defect, crop_label
+from models.labelled import Defect, crop_label
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENTS
 from synth.dataset import Order, workers, write_dataset

@@ -97,7 +97,7 @@ def test_mistakes_end_with_one_line_and_code_2(command: list[str], text: str | N
     [
         (["station", "replay", "/nowhere/at/all"], "no such file"),
         (["station", "records", "/nowhere/at/all"], "no records here"),
-        (["models", "train", "/nowhere/at/all", "--out", "/tmp"], "weldgate-synth part"),
+        (["models", "train", "/nowhere/at/all", "--out", "/tmp"], "weldgate-synth dataset"),
         (["station", "line", "--port", "1", "--parts", "1"], "no Modbus server"),
     ],
 )

@@ -1,0 +1,64 @@
+"""21 crops through the shipped classifier beside the paper's network, in turns: `python -m models.bench [FILE …]`."""
+
+import statistics
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from models.export import write_onnx
+from models.paper import PaperNet
+from station.classify.onnx import Classifier, Network
+from station.domain import SEGMENT_PX, SEGMENTS
+
+SHIPPED = Path(__file__).resolve().parent / "shipped" / "weldgate.onnx"
+ROUNDS = 200
+THREADS = 2
+
+
+class _Plain(nn.Module):
+    """The paper's network as it is usually run: three channels of float32 in, its images prepared outside."""
+
+    def __init__(self, network: PaperNet) -> None:
+        super().__init__()
+        self.network = network
+
+    def forward(self, images: Tensor) -> Tensor:
+        """Images (K, 3, 128, 128) to logits."""
+        logits: Tensor = self.network.classes(self.network.features(images).mean(dim=(2, 3)))
+        return logits
+
+
+def main() -> None:
+    """Print medians and ratios."""
+    crops = np.random.default_rng(0).integers(0, 256, (SEGMENTS, SEGMENT_PX, SEGMENT_PX), dtype=np.uint8)
+    runs: dict[str, Callable[[], object]] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        images = torch.zeros((SEGMENTS, 3, SEGMENT_PX, SEGMENT_PX))
+        path = write_onnx(_Plain(PaperNet(3).eval()), images, Path(folder) / "paper.onnx", "images", ("logits",), {})
+        paper = Network(path, THREADS)
+        whole = images.numpy()
+        runs["the paper's network, 1.6 M weights"] = lambda: paper.run(("logits",), {"images": whole})
+        for file in [Path(name) for name in sys.argv[1:]] or [SHIPPED]:
+            classifier = Classifier(file, THREADS)
+            runs[f"{file.name}, maps and distances included"] = lambda c=classifier: c(crops)  # type: ignore[misc]
+        times: dict[str, list[float]] = {name: [] for name in runs}
+        for _ in range(ROUNDS):
+            for name, run in runs.items():
+                start = perf_counter()
+                run()
+                times[name].append((perf_counter() - start) * 1000)
+    medians = {name: statistics.median(values) for name, values in times.items()}
+    first = next(iter(medians.values()))
+    print(f"{SEGMENTS} crops, {THREADS} threads, median of {ROUNDS} in turns")
+    for name, ms in medians.items():
+        print(f"{name:45} {ms:6.2f} ms   {first / ms:4.1f} x")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+"""An evaluation as lines, JSON and a self-contained HTML page."""
+
+import base64
+import html
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from itertools import pairwise
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from models.crops import OK
+from models.evaluate import Evaluation
+from models.measures import ESCAPE_COST, calibration_error, count, interval
+from station.classify.onnx import CLASSES
+
+SIZES_MM = (0.0, 0.15, 0.3, 0.6, 1.2, 1e9)
+WORST = 24
+
+
+def summary(found: Evaluation) -> dict[str, Any]:
+    """All figures, JSON-ready."""
+    truth = found.labels != OK
+    counts = count(found.nok, truth)
+    answer: dict[str, Any] = {
+        "segments": {
+            **asdict(counts),
+            "precision": counts.precision,
+            "recall": counts.recall,
+            "f2": counts.f2,
+            "calibration_error": calibration_error(1 - found.scores[:, OK], truth, np.where(truth, ESCAPE_COST, 1.0)),
+            "confusion": _confusion(found),
+        }
+    }
+    if found.parts:
+        answer["parts"] = _parts(found)
+        answer["defects"] = _by_size(found)
+    return answer
+
+
+def _confusion(found: Evaluation) -> dict[str, dict[str, int]]:
+    """Truth to what was said; the kind said is that of the larger probability."""
+    said = np.where(found.nok, 1 + found.scores[:, 1:].argmax(axis=1), OK)
+    return {
+        name: {other: int(((found.labels == i) & (said == j)).sum()) for j, other in enumerate(CLASSES)} for i, name in enumerate(CLASSES)
+    }
+
+
+def _parts(found: Evaluation) -> dict[str, Any]:
+    escapes, rejects = found.named("NOK", "OK"), found.named("OK", "NOK")
+    errors = [f"{p.name} ({p.reason})" for p in found.parts if p.verdict == "ERROR"]
+    bad, good = (sum(p.truth == t for p in found.parts) for t in ("NOK", "OK"))
+    rings = [(p.center_error_px, p.radius_error_px) for p in found.parts if p.center_error_px is not None and p.radius_error_px is not None]
+    answer = {
+        "count": len(found.parts),
+        "right": sum(p.truth == p.verdict for p in found.parts),
+        "nok": bad,
+        "ok": good,
+        "escapes": escapes,
+        "escape_rate_95": interval(len(escapes), bad),
+        "false_rejects": rejects,
+        "false_reject_rate_95": interval(len(rejects), good),
+        "not_judged": errors,
+        "nok_segments_not_judged": found.unjudged,
+        "reported_as_novel": sum(p.novel for p in found.parts),
+    }
+    if rings:
+        center, radius = zip(*rings, strict=True)
+        answer |= {"center_error_px": [median(center), max(center)], "radius_error_px": [median(radius), max(radius)]}
+    return answer
+
+
+def _by_size(found: Evaluation) -> list[dict[str, Any]]:
+    """Defects found, by kind and length."""
+    rows = []
+    for kind in CLASSES[1:]:
+        for low, high in pairwise(SIZES_MM):
+            hits = [
+                d.found for p in found.parts for d in p.defects if d.kind == kind and d.length_mm is not None and low <= d.length_mm < high
+            ]
+            if hits:
+                rows.append({"kind": kind, "from_mm": low, "to_mm": None if high > 1e8 else high, "found": sum(hits), "of": len(hits)})
+    return rows
+
+
+def lines(found: Evaluation) -> list[str]:
+    """For people."""
+    figures = summary(found)
+    answer = []
+    if found.parts:
+        p = figures["parts"]
+        wrong = f"{len(p['escapes'])} escapes, {len(p['false_rejects'])} false rejects, {len(p['not_judged'])} not judged"
+        answer.append(f"{p['count']} parts: {p['right']} right, {wrong}")
+        answer.append(f"95 % intervals: escapes {_percent(p['escape_rate_95'])}, false rejects {_percent(p['false_reject_rate_95'])}")
+        if "center_error_px" in p:
+            (a, b), (c, d) = p["center_error_px"], p["radius_error_px"]
+            answer.append(f"ring, median and worst error: centre {a:.2f}, {b:.2f} px; radius {c:.2f}, {d:.2f} px")
+    s = figures["segments"]
+    answer.append(
+        f"segments: precision {s['precision']:.3f}, recall {s['recall']:.3f}, F2 {s['f2']:.3f} ({s['fn']} missed, {s['fp']} false)"
+    )
+    answer.append(f"calibration error {s['calibration_error']:.3f}")
+    if found.parts:
+        p = figures["parts"]
+        if p["reported_as_novel"]:
+            answer.append(f"{p['reported_as_novel']} parts look unlike the training images")
+        for title, key in (("escaped", "escapes"), ("falsely refused", "false_rejects"), ("not judged", "not_judged")):
+            if p[key]:
+                answer.append(f"{title}: {', '.join(p[key])}")
+    return answer
+
+
+def _percent(bounds: tuple[float, float]) -> str:
+    return f"{bounds[0]:.1%} to {bounds[1]:.1%}"
+
+
+def write_report(found: Evaluation, folder: Path, title: str, facts: dict[str, str]) -> None:
+    """`report.html` and `evaluation.json` in `folder`; `facts` say which files were judged by what."""
+    from models.figures import curves, sheet
+
+    folder.mkdir(parents=True, exist_ok=True)
+    figures = summary(found)
+    (folder / "evaluation.json").write_text(json.dumps({**facts, **figures}, indent=1) + "\n")
+    nok, truth = 1 - found.scores[:, OK], found.labels != OK
+    sections = [f"<h1>{html.escape(title)}</h1>", _table([*facts.items()]), "<ul>"]
+    sections += [f"<li>{html.escape(line)}</li>" for line in lines(found)] + ["</ul>"]
+    if truth.any() and not truth.all():
+        sections.append(_image(curves(nok, truth, ESCAPE_COST), "curves"))
+    sections.append("<h2>Segments: truth against what was said</h2>")
+    confusion = figures["segments"]["confusion"]
+    sections.append(_table([(name, *map(str, row.values())) for name, row in confusion.items()], ("", *CLASSES)))
+    if figures.get("defects"):
+        sections.append("<h2>Defects found, by kind and length</h2>")
+        rows = [(d["kind"], _span(d), f"{d['found']} of {d['of']}") for d in figures["defects"]]
+        sections.append(_table(rows, ("kind", "length", "found")))
+    if found.images is not None:
+        worst = np.argsort(np.where(truth, nok, 1 - nok))[:WORST]
+        titles = [f"{found.names[i]}\n{CLASSES[found.labels[i]]}: p(NOK) {nok[i]:.2f}" for i in worst]
+        sections.append("<h2>Worst crops: farthest from their truth first</h2>")
+        sections.append(_image(sheet(found.images[worst], titles), "worst crops"))
+    style = (
+        "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
+        "table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #bbb;padding:.25em .7em;text-align:left}img{max-width:100%}"
+    )
+    page = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{html.escape(title)}</title><style>{style}</style>'
+    (folder / "report.html").write_text(page + "\n".join(sections) + "</html>\n", encoding="utf-8")
+
+
+def _span(row: dict[str, Any]) -> str:
+    return f"from {row['from_mm']:g} mm" if row["to_mm"] is None else f"{row['from_mm']:g} to {row['to_mm']:g} mm"
+
+
+def _table(rows: Sequence[tuple[str, ...]], head: tuple[str, ...] = ()) -> str:
+    top = "<tr>" + "".join(f"<th>{html.escape(h)}</th>" for h in head) + "</tr>" if head else ""
+    return "<table>" + top + "".join("<tr>" + "".join(f"<td>{html.escape(c)}</td>" for c in row) + "</tr>" for row in rows) + "</table>"
+
+
+def _image(content: bytes, name: str) -> str:
+    return f'<p><img alt="{name}" src="data:image/png;base64,{base64.b64encode(content).decode()}"></p>'

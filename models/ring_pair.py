@@ -1,0 +1,74 @@
+"""Two ring networks as one file: the offsets by presence, the first counting three times; the presences as they are.
+
+One network may be exact and blind to some surfaces, another see more and less exactly.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import onnx
+from onnx import TensorProto, compose, helper
+
+from models.errors import LearningError
+from station.classify.onnx import RingNetwork
+from station.vision.polar import COLUMNS, ROWS, SECTORS
+
+FIRST_WEIGHT = 3.0
+TOLERANCE = 1e-4
+
+
+def pair_rings(first: Path, second: Path, out: Path, version: str) -> None:
+    """Write `out`/ring.onnx and `out`/RING.md. Raises ModelError, LearningError if the file does not answer as the two together."""
+    networks = [RingNetwork(path) for path in (first, second)]
+    loaded = [onnx.load(str(path)) for path in (first, second)]
+    parents = [{m.key: m.value for m in model.metadata_props} for model in loaded]
+    a, b = (compose.add_prefix(model, f"{name}/", rename_inputs=False) for name, model in zip("ab", loaded, strict=True))
+    nodes = [*a.graph.node, *b.graph.node, *_mean()]
+    values = [
+        helper.make_tensor(name, TensorProto.FLOAT, [1], [value]) for name, value in (("w", FIRST_WEIGHT), ("half", 0.5), ("e", 1e-6))
+    ]
+    target = helper.make_tensor_value_info("sectors", TensorProto.FLOAT, ["count", 2, SECTORS])
+    graph = helper.make_graph(nodes, "rings", list(a.graph.input), [target], [*a.graph.initializer, *b.graph.initializer, *values])
+    model = helper.make_model(graph, opset_imports=list(a.opset_import), ir_version=a.ir_version)
+    hashes = [parent.get("weldgate.data_hash", "unknown") for parent in parents]
+    for key, value in (("weldgate.version", version), ("weldgate.data_hash", "+".join(hashes))):
+        entry = model.metadata_props.add()
+        entry.key, entry.value = key, value
+    out.mkdir(parents=True, exist_ok=True)
+    part = out / "ring.part.onnx"
+    onnx.save(model, str(part))
+    band = np.random.default_rng(0).integers(0, 256, (ROWS, COLUMNS), dtype=np.uint8)[None]
+    (o1, p1), (o2, p2) = (network.sectors(band)[0] for network in networks)
+    weight = FIRST_WEIGHT * p1
+    wanted = np.stack([(weight * o1 + p2 * o2) / (weight + p2 + 1e-6), (p1 + p2) / 2])
+    gap = float(np.abs(RingNetwork(part).sectors(band)[0] - wanted).max())
+    if not gap <= TOLERANCE * max(1.0, float(np.abs(wanted).max())):
+        part.unlink()
+        raise LearningError(f"{out / 'ring.onnx'}: differs from the two networks by {gap:.2g}; nothing kept")
+    part.replace(out / "ring.onnx")
+    facts = [
+        {"version": p.get("weldgate.version"), "data_hash": h, "sha256": n.file_hash}
+        for p, h, n in zip(parents, hashes, networks, strict=True)
+    ]
+    card = {"version": version, "first_weight": FIRST_WEIGHT, "networks": facts}
+    text = "Two networks trained on rendered images only, joined by `weldgate-models pair-rings`."
+    (out / "RING.md").write_text(f"# Ring network\n\n{text}\n\n```json\n{json.dumps(card, indent=2)}\n```\n")
+
+
+def _mean() -> list[onnx.NodeProto]:
+    """Sectors of `a` and `b`, each (K, 2, 84) of offset and presence, to their mean."""
+    return [
+        helper.make_node("Split", ["a/sectors"], ["o1", "p1"], axis=1),
+        helper.make_node("Split", ["b/sectors"], ["o2", "p2"], axis=1),
+        helper.make_node("Mul", ["p1", "w"], ["w1"]),
+        helper.make_node("Mul", ["w1", "o1"], ["s1"]),
+        helper.make_node("Mul", ["p2", "o2"], ["s2"]),
+        helper.make_node("Add", ["s1", "s2"], ["s"]),
+        helper.make_node("Add", ["w1", "p2"], ["w12"]),
+        helper.make_node("Add", ["w12", "e"], ["whole"]),
+        helper.make_node("Div", ["s", "whole"], ["offset"]),
+        helper.make_node("Add", ["p1", "p2"], ["p12"]),
+        helper.make_node("Mul", ["p12", "half"], ["presence"]),
+        helper.make_node("Concat", ["offset", "presence"], ["sectors"], axis=1),
+    ]
