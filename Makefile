@@ -23,9 +23,10 @@ lint: $(VENV)/.dev ## ruff, mypy, import contracts
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(VENV)/.demo ## times of each step on the emulated camera, crops per second of the generator
+bench: $(VENV)/.dev ## times of each step on the emulated camera, of the generator and of the classifier
 	$(BIN)/python -m deploy.bench
 	$(BIN)/python -m deploy.bench_render
+	$(BIN)/python -m models.bench
 
 clean: ## remove the virtual environment
 	rm -rf $(VENV)

@@ -46,7 +46,7 @@ def main() -> None:
         runs["the paper's network, 1.6 M weights"] = lambda: paper.run(("logits",), {"images": whole})
         for file in [Path(name) for name in sys.argv[1:]] or [SHIPPED]:
             classifier = Classifier(file, THREADS)
-            runs[f"{file.name}, maps and distances included"] = lambda c=classifier: c(crops)  # type: ignore[misc]
+            runs[f"{file}, maps included"] = lambda c=classifier: c(crops)  # type: ignore[misc]
         times: dict[str, list[float]] = {name: [] for name in runs}
         for _ in range(ROUNDS):
             for name, run in runs.items():
@@ -57,7 +57,7 @@ def main() -> None:
     first = next(iter(medians.values()))
     print(f"{SEGMENTS} crops, {THREADS} threads, median of {ROUNDS} in turns")
     for name, ms in medians.items():
-        print(f"{name:45} {ms:6.2f} ms   {first / ms:4.1f} x")
+        print(f"{name:60} {ms:6.2f} ms   {first / ms:4.1f} x")
 
 
 if __name__ == "__main__":

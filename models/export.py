@@ -17,7 +17,7 @@ from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from models.errors import LearningError
-from models.network import FEATURES, WeldNet
+from models.network import STATISTICS, WeldNet
 from models.ring import RingNet
 from station.classify.decision import Thresholds
 from station.classify.onnx import CLASSES, Classifier, RingNetwork
@@ -36,9 +36,9 @@ class Contract:
     """SHA-256 of the training images."""
     thresholds: Thresholds
     mean: NDArray[np.float64]
-    """Mean features of the training crops (160,)."""
+    """Mean statistics of the training crops (192,)."""
     whitening: NDArray[np.float64]
-    """(160, 160): features minus mean times this have unit covariance over the training crops."""
+    """(192, 192): statistics minus mean times this have unit covariance over the training crops."""
     novelty_limit: float
     """Distance of a part to the training images from which it is reported."""
     prior_shift: tuple[float, float, float]
@@ -56,19 +56,19 @@ class Contract:
 
 
 class Shipped(nn.Module):
-    """The network as the station runs it: probabilities, defect map, distance of the features to the training images."""
+    """The network as the station runs it: probabilities, defect map, distance of the statistics to those of the training images."""
 
     def __init__(self, network: WeldNet, prior_shift: tuple[float, float, float]) -> None:
         super().__init__()
         self.network = network
         self.prior_shift: Tensor
         self.register_buffer("prior_shift", torch.tensor(prior_shift))
-        self.whiten = nn.Linear(FEATURES, FEATURES)
+        self.whiten = nn.Linear(STATISTICS, STATISTICS)
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Crops (K, 1, 128, 128) uint8 to probabilities (K, 3), map (K, 2, 32, 32) 0..1, mean squared distances (K,)."""
-        logits, where, features = self.network(crops)
-        away = self.whiten(features)
+        logits, where, statistics = self.network(crops)
+        away = self.whiten(statistics)
         return torch.softmax(logits + self.prior_shift, dim=1), torch.sigmoid(where), (away * away).mean(dim=1)
 
 

@@ -113,7 +113,7 @@ def _loss(
 
 
 def predict(network: WeldNet, images: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Probabilities (N, 3) and features (N, D) of images (N, 128, 128) uint8."""
+    """Probabilities (N, 3) and statistics (N, 192) of images (N, 128, 128) uint8."""
     network.eval()
     with torch.no_grad():
         answers = [network(chunk[:, None]) for chunk in torch.split(torch.from_numpy(images), 128)]

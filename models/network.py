@@ -5,7 +5,9 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 FEATURES = 160
-"""Length of the pooled feature vector that the classes are told from."""
+"""Length of the pooled vector that the classes are told from."""
+STATISTICS = 2 * (32 + 64)
+"""Length of the vector that tells what an image looks like: mean and deviation of each fine channel, whatever it shows."""
 
 
 def channels_last(network: nn.Module) -> None:
@@ -69,7 +71,7 @@ class WeldNet(nn.Module):
         self.classes = nn.Sequential(nn.Dropout(0.2), nn.Linear(FEATURES + 2, 3))
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Crops (K, 1, 128, 128) uint8 to class logits (K, 3), map logits (K, 2, 32, 32) of hole and missing weld, features (K, 160).
+        """Crops (K, 1, 128, 128) uint8 to class logits (K, 3), map logits (K, 2, 32, 32) of hole and missing weld, statistics (K, 192).
 
         Each crop is brought to mean 0 and standard deviation 1.
         """
@@ -84,4 +86,10 @@ class WeldNet(nn.Module):
         ends = [sixteenth.mean(dim=(2, 3)), sixteenth.amax(dim=(2, 3)), fine.mean(dim=(2, 3)), fine.amax(dim=(2, 3))]
         features = self.feature(torch.cat(ends, dim=1))
         logits = self.classes(torch.cat([features, where.amax(dim=(2, 3))], dim=1))
-        return logits, where, features
+        return logits, where, torch.cat([_statistics(quarter), _statistics(eighth)], dim=1)
+
+
+def _statistics(x: Tensor) -> Tensor:
+    """Mean and standard deviation of each channel, (K, 2 C)."""
+    mean = x.mean(dim=(2, 3))
+    return torch.cat([mean, torch.sqrt((x * x).mean(dim=(2, 3)) - mean * mean + 1e-4)], dim=1)

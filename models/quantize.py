@@ -1,5 +1,7 @@
 """The classifier's file in 8 bits, kept only if it judges as well; the only file that imports onnxruntime's quantizer."""
 
+import contextlib
+import io
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -41,17 +43,18 @@ def quantize(path: Path, target: Path, training: Crops, held: Crops) -> dict[str
     prepared, part = target.with_suffix(".prepared.onnx"), target.with_suffix(".part.onnx")
     try:
         quant_pre_process(str(path), str(prepared), skip_symbolic_shape=True)
-        quantize_static(
-            str(prepared),
-            str(part),
-            _Batches(training),
-            quant_format=QuantFormat.QDQ,
-            per_channel=True,
-            activation_type=QuantType.QUInt8,
-            weight_type=QuantType.QInt8,
-            calibrate_method=CalibrationMethod.Percentile,
-            op_types_to_quantize=["Conv"],
-        )
+        with contextlib.redirect_stdout(io.StringIO()):  # it tells its progress
+            quantize_static(
+                str(prepared),
+                str(part),
+                _Batches(training),
+                quant_format=QuantFormat.QDQ,
+                per_channel=True,
+                activation_type=QuantType.QUInt8,
+                weight_type=QuantType.QInt8,
+                calibrate_method=CalibrationMethod.MinMax,
+                op_types_to_quantize=["Conv"],
+            )
         model = onnx.load(str(part))
         if not model.metadata_props:
             model.metadata_props.extend(onnx.load(str(path)).metadata_props)

@@ -7,7 +7,7 @@ import torch
 from models import export as export_file
 from models.errors import LearningError
 from models.export import Contract, export, export_ring, read_network
-from models.network import FEATURES, WeldNet
+from models.network import STATISTICS, WeldNet
 from models.ring import RingNet
 from models.ring_pair import pair_rings
 from station.classify.decision import Thresholds
@@ -17,7 +17,7 @@ from tests.conftest import RING_MODEL
 
 def contract() -> Contract:
     rng = np.random.default_rng(1)
-    return Contract("1.2", "d" * 64, Thresholds(0.3, 0.2), rng.normal(size=FEATURES), np.eye(FEATURES) * 0.5, 2.5, (0.5, -1.0, -0.5))
+    return Contract("1.2", "d" * 64, Thresholds(0.3, 0.2), rng.normal(size=STATISTICS), np.eye(STATISTICS) * 0.5, 2.5, (0.5, -1.0, -0.5))
 
 
 def trained() -> WeldNet:

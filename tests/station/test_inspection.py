@@ -28,6 +28,25 @@ def test_findings_touch_the_true_defects(frames: dict[str, Image], inspector: In
         assert any(f.start_deg <= middle + turn <= f.end_deg for f in found for turn in (-360, 0, 360))
 
 
+def test_a_hole_is_measured_where_it_is(frames: dict[str, Image], inspector: Inspector) -> None:
+    item = label_with("hole")
+    measured = [f for f in inspector.inspect(frames[item["frame"]]).findings if f.width_mm is not None]
+    assert measured
+    for defect in item["defects"]:
+        middle = sum(defect["angle_deg"]) / 2
+        near = [f for f in measured if any(f.start_deg - 1 <= middle + turn <= f.end_deg + 1 for turn in (-360, 0, 360))]
+        assert near, defect
+        assert min(abs(f.length_mm - defect["length_mm"]) for f in near) < 0.15
+
+
+def test_a_part_unlike_the_training_images_is_told(frames: dict[str, Image], inspector: Inspector) -> None:
+    judged = inspector.inspect(frames[label_with("OK")["frame"]])
+    assert judged.novelty is not None
+    assert not inspector.is_novel(judged)
+    assert inspector.is_novel(replace(judged, novelty=inspector.card.novelty_limit * 1.01))
+    assert not inspector.is_novel(Inspection.error(Reason.CAMERA_LOST))
+
+
 def test_same_frame_same_answer_to_the_bit(frames: dict[str, Image], inspector: Inspector) -> None:
     image = frames[labels()[0]["frame"]]
     first, second = inspector.inspect(image), inspector.inspect(image)
