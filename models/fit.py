@@ -17,8 +17,6 @@ from models.network import WeldNet, channels_last
 
 Report = Callable[[str], None]
 Trained = TypeVar("Trained", bound=nn.Module)
-UNSEEN_LOSS = 1.4
-"""Mean loss of a defect that the network holds for OK with more than 75 %."""
 MIN_LEFT = 0.3
 """A crop whose defect was moved out of the picture but for this share teaches nothing."""
 
@@ -39,6 +37,9 @@ class Plan:
     """Share of the old weights in the moving average that is kept as the result."""
     hardness: float = 0.25
     """How much oftener a crop is drawn the larger its last loss was, 0: all alike."""
+    unseen_loss: float | None = 1.4
+    """Rendered defects with a larger mean loss at half time are left out from then on: lost in dark or blur, they teach only false
+    alarms. 1.4: held for OK with more than 75 %. None: none, for what a person has labelled can be seen."""
     seed: int = 0
 
 
@@ -60,8 +61,8 @@ def fit(network: Trained, crops: Crops, plan: Plan, report: Report) -> Trained:
     network.train()
     channels_last(network)
     for step in range(1, plan.steps + 1):
-        if step == plan.steps // 2:
-            pools = [_visible(pool, lost) if kind != OK else pool for kind, pool in enumerate(pools)]
+        if step == plan.steps // 2 and plan.unseen_loss is not None:
+            pools = [pool if kind == OK else _visible(pool, lost, plan.unseen_loss) for kind, pool in enumerate(pools)]
         chosen = torch.from_numpy(_draw(pools, lost, plan, drawn))
         wanted = maps[chosen].float() / 255
         seen, moved = augment(images[chosen][:, None].float(), wanted, rng)
@@ -84,9 +85,9 @@ def fit(network: Trained, crops: Crops, plan: Plan, report: Report) -> Trained:
     return cast("Trained", average.module)
 
 
-def _visible(pool: NDArray[np.int64], lost: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Without the defects that half of the training could not learn: lost in dark or blur, they teach only false alarms."""
-    seen = pool[lost[pool] < UNSEEN_LOSS]
+def _visible(pool: NDArray[np.int64], lost: NDArray[np.float64], unseen_loss: float) -> NDArray[np.int64]:
+    """Without the crops that half of the training could not learn, unless these are most of them."""
+    seen = pool[lost[pool] < unseen_loss]
     return seen if seen.size > pool.size // 2 else pool
 
 

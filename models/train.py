@@ -25,7 +25,7 @@ from station.classify.onnx import Classifier
 
 RENDERED = "The network has seen rendered images only."
 FINE_TUNED = "Fine-tuned on a line's own labelled images, those of other parts held out."
-FINE_TUNING = Plan(steps=600, learning_rate=0.0005, hardness=0.0)
+FINE_TUNING = Plan(steps=600, learning_rate=0.0005, hardness=0.0, unseen_loss=None)
 BATCH = 256
 
 
@@ -53,7 +53,7 @@ def fine_tune(lot: Path, model: Path | None, out: Path, version: str, seed: int,
     """
     train_strips, validation_strips, test_strips = split_by_part(read_lot(lot), seed)
     training = window_crops(train_strips, 10, np.random.default_rng(seed))
-    plan = replace(FINE_TUNING, seed=seed) if model is not None else Plan(steps=2000, seed=seed)
+    plan = replace(FINE_TUNING, seed=seed) if model is not None else Plan(steps=2000, unseen_loss=None, seed=seed)
     torch.manual_seed(seed)
     start = perf_counter()
     network = fit(WeldNet() if model is None else read_network(model), training, plan, report)
