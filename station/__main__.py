@@ -102,17 +102,11 @@ def _replay(arguments: argparse.Namespace) -> int:
     from rich.progress import track
 
     from station.replay import image_files, judge, write_csv, write_json
-    from station.settings import Settings, load
+    from station.settings import for_images, load
     from station.startup import load_inspector
 
     files = image_files(arguments.paths)
-    settings = (
-        load(arguments.settings)
-        if arguments.settings
-        else Settings.model_validate(
-            {"camera": {"kind": "replay", "folder": "."}, "model": {"path": SHIPPED / "weldgate.onnx", "ring_path": SHIPPED / "ring.onnx"}}
-        )
-    )
+    settings = for_images(SHIPPED) if arguments.settings is None else load(arguments.settings)
     for target in (arguments.json, arguments.csv):
         if target is not None and (target.is_dir() or not os.access(target.resolve().parent, os.W_OK)):
             raise WeldgateError(f"{target}: cannot be written there; name a file in a writable folder")

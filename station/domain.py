@@ -143,7 +143,7 @@ class Inspection:
     findings: tuple[Finding, ...] = ()
     timing: Timing = field(default_factory=Timing)
     novelty: float | None = None
-    """Distance of the part's crops to the training images in the network's features; about 1 for these."""
+    """Distance of the look of the part's crops to that of the training images; about 1 for these."""
 
     def __post_init__(self) -> None:
         if self.verdict is Verdict.OK and (len(self.scores) != SEGMENTS or self.ring is None or self.reason is not None):

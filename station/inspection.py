@@ -63,8 +63,9 @@ class Inspector:
         if poor is not None:
             return Inspection.error(poor, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
         try:
-            judged = self.classifier(segments(strip))
-            scores = self._look_twice(strip, judged.scores)
+            crops = segments(strip)
+            judged = self.classifier(crops)
+            scores = self._look_twice(crops, judged.scores)
         except ModelError:
             return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
         found = findings(scores, judged.maps, self.thresholds, ring, self._weld.um_per_px)
@@ -80,15 +81,15 @@ class Inspector:
             novelty=sqrt(float(judged.distances.mean())),
         )
 
-    def _look_twice(self, strip: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:
+    def _look_twice(self, crops: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:
         """Segments near their threshold are seen again in the mirror: a mirrored weld is a weld, with the same defects."""
         near = [i for i, s in enumerate(scores) if near_threshold(s, self.thresholds)]
         if not near:
             return scores
-        crops = segments(strip)[near]
-        views = np.concatenate([crops[:, :, ::-1], crops[:, ::-1], crops[:, ::-1, ::-1]])
-        again = self.classifier(np.ascontiguousarray(views)).scores
-        seen = {segment: (scores[segment], *again[i :: len(near)]) for i, segment in enumerate(near)}
+        again = crops[near]
+        views = np.concatenate([again[:, :, ::-1], again[:, ::-1], again[:, ::-1, ::-1]])
+        mirrored = self.classifier(views).scores
+        seen = {segment: (scores[segment], *mirrored[i :: len(near)]) for i, segment in enumerate(near)}
         return tuple(mean_of(seen[i]) if i in seen else s for i, s in enumerate(scores))
 
 

@@ -118,6 +118,12 @@ class Settings(Section):
     channel: ChannelSettings = ChannelSettings()
 
 
+def for_images(networks: Path) -> Settings:
+    """Settings to judge recorded images by, without a file: the default limits, and the networks in a folder."""
+    camera = ReplaySettings(kind="replay", folder=Path())
+    return Settings(camera=camera, model=ModelSettings(path=networks / "weldgate.onnx", ring_path=networks / "ring.onnx"))
+
+
 def load(path: Path) -> Settings:
     """Settings from a TOML file.
 

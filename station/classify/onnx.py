@@ -47,7 +47,7 @@ class Judged:
     maps: NDArray[np.float32]
     """Share of each cell that a hole or a missing weld covers, (K, 2, 32, 32)."""
     distances: NDArray[np.float32]
-    """Mean squared distance of the features to those of the training crops, (K,); 1 for these."""
+    """Mean squared distance of the look of each crop to that of the training crops, (K,); about 1 for these."""
 
 
 class Network:
