@@ -23,12 +23,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; 0 good, 1 something was found wrong, 2 it could not be done."""
     arguments = _parser().parse_args(argv)
     try:
+        _check_numbers(arguments)
         return int(arguments.command(arguments))
     except (LearningError, WeldgateError, OSError) as error:
         print(f"weldgate-models: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
+
+
+def _check_numbers(arguments: argparse.Namespace) -> None:
+    for name, low, high in (("steps", 1, 10**7), ("seed", 0, 2**31 - 1), ("seeds", 0, 2**31 - 1)):
+        values = getattr(arguments, name, None)
+        for value in values if isinstance(values, list) else [values]:
+            if value is not None and not low <= value <= high:
+                raise LearningError(f"--{name} is {value}; {low} to {high} is allowed")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -115,14 +124,10 @@ def _progress(text: str, total: int) -> Iterator[Callable[[], None]]:
 
 
 def _inspector(arguments: argparse.Namespace) -> "Inspector":
-    from station.settings import Settings, load
+    from station.settings import for_images, load
     from station.startup import load_inspector
 
-    shipped = {
-        "camera": {"kind": "replay", "folder": "."},
-        "model": {"path": SHIPPED / "weldgate.onnx", "ring_path": SHIPPED / "ring.onnx"},
-    }
-    settings = Settings.model_validate(shipped) if arguments.settings is None else load(arguments.settings)
+    settings = for_images(SHIPPED) if arguments.settings is None else load(arguments.settings)
     named = {key: value for key, value in (("path", arguments.model), ("ring_path", arguments.ring)) if value is not None}
     return load_inspector(settings.model_copy(update={"model": settings.model.model_copy(update=named)}))[0]
 
@@ -195,7 +200,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     extra: list[str] = []
     if all(rendered):
         held = read_rendered(arguments.data)[1]
-        found = evaluate_crops(held, inspector.classifier, inspector.is_nok)
+        found = evaluate_crops(held, inspector.classifier, inspector.thresholds)
         if arguments.boxes:
             extra = _boxes(arguments.data, held, inspector, [KINDS[k] for k in arguments.kinds])
     elif len(arguments.data) == 1:

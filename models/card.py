@@ -8,10 +8,11 @@ from typing import Any
 def write_card(out: Path, card: dict[str, Any]) -> None:
     """`run.json` with all figures, and CARD.md for people."""
     (out / "run.json").write_text(json.dumps(card, indent=1) + "\n")
-    (out / "CARD.md").write_text(_text(card))
+    (out / "CARD.md").write_text(card_text(card))
 
 
-def _text(card: dict[str, Any]) -> str:
+def card_text(card: dict[str, Any]) -> str:
+    """CARD.md of a run's figures."""
     held, thresholds = card["held_out"], card["thresholds"]
     rows = [
         ("version", card["version"]),
@@ -36,6 +37,6 @@ def _text(card: dict[str, Any]) -> str:
         "(`weldgate-models evaluate`, `weldgate-models first-day`).\n\n"
         "Input `crops` uint8 (K, 1, 128, 128): crops of the unwrapped weld, row 0 outermost. Outputs: `probabilities` (K, 3) of ok, hole,\n"
         "missing_weld; `maps` (K, 2, 32, 32), the share of each cell of 4 x 4 px that a hole or a missing weld covers; `distances` (K,),\n"
-        "the mean squared distance of the features to those of the training crops.\n\n"
+        "the mean squared distance of each crop's look to that of the training crops.\n\n"
         f"```json\n{json.dumps({'plan': card['plan']}, indent=1)}\n```\n"
     )

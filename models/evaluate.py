@@ -10,18 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.crops import HOLE, IGNORED, OK, Crops
-from models.errors import LearningError, listed
-from models.labelled import crop_label, defects_of, read_labels
+from models.labelled import crop_label, defects_of, frames, read_labels
+from models.measures import refused
+from models.scores import class_scores
+from station.classify.decision import Thresholds
 from station.classify.onnx import CLASSES, Classifier
 from station.domain import SEGMENT_DEG, SEGMENTS, Inspection, Verdict
-from station.errors import ImageError
-from station.imagefile import read_image
 from station.inspection import Inspector
 from station.vision.unwrap import segments, unwrap
 
-KEPT_CROPS = 2000
+WORST = 24
 """Crops kept for the contact sheet."""
-BATCH = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,19 +48,34 @@ class PartResult:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Worst:
+    """A crop (128, 128) uint8 that is far from its truth."""
+
+    name: str
+    image: NDArray[np.uint8]
+    label: int
+    nok: float
+    """Its score of NOK."""
+
+    @property
+    def wrongness(self) -> float:
+        """Distance to the truth, 0 to 1."""
+        return self.nok if self.label == OK else 1 - self.nok
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
     """What came out: parts (none if crops were judged), and of each judged crop its score, label and decision.
 
-    scores (N, 3), labels (N,) without IGNORED, nok (N,); `unjudged` NOK segments lie on parts that ended in ERROR; images (N, 128, 128)
-    uint8 or none if there are too many to keep.
+    scores (N, 3), labels (N,) without IGNORED, nok (N,); `worst`: farthest from their truth first; `unjudged` NOK segments lie on parts
+    that ended in ERROR.
     """
 
     parts: tuple[PartResult, ...]
     scores: NDArray[np.float64]
     labels: NDArray[np.int64]
     nok: NDArray[np.bool_]
-    names: tuple[str, ...]
-    images: NDArray[np.uint8] | None
+    worst: tuple[Worst, ...]
     unjudged: int = 0
 
     def named(self, truth: str, verdict: str) -> list[str]:
@@ -70,80 +84,68 @@ class Evaluation:
 
 
 def evaluate_lot(lot: Path, inspector: Inspector, progress: Callable[[], None] = lambda: None) -> Evaluation:
-    """Judge every frame of a lot. Raises LearningError before any frame is judged, ImageError."""
+    """Judge every frame of a lot. Raises LearningError before any frame is judged."""
     items = read_labels(lot)
-    wrong = [problem for item in items if (problem := _unreadable(lot / "frames" / str(item["frame"])))]
-    if wrong:
-        raise LearningError(listed(lot, wrong))
+    for _ in frames(lot, items):
+        pass  # what cannot be read is told before the work begins
     parts, crops = [], _Collected()
-    for item in items:
-        image = read_image(lot / "frames" / str(item["frame"]))
+    for item, image in frames(lot, items):
         judged = inspector.inspect(image)
         defects = defects_of(item)
         labels = [crop_label(defects, i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i in range(SEGMENTS)]
-        refused = [i < len(judged.scores) and inspector.is_nok(judged.scores[i]) for i in range(SEGMENTS)]
-        crops.add(str(item["frame"]), image, judged, labels, refused)
-        parts.append(_part(item, judged, refused, inspector))
+        nok = [i < len(judged.scores) and inspector.is_nok(judged.scores[i]) for i in range(SEGMENTS)]
+        crops.add(str(item["frame"]), image, judged, labels, nok)
+        parts.append(_part(item, judged, nok, inspector))
         progress()
     return crops.evaluation(tuple(parts))
 
 
-def evaluate_crops(crops: Crops, classifier: Classifier, is_nok: Callable[[Any], bool]) -> Evaluation:
+def evaluate_crops(crops: Crops, classifier: Classifier, thresholds: Thresholds) -> Evaluation:
     """Judge crops, as the station does with those of a strip."""
-    scores = [s for i in range(0, len(crops), BATCH) for s in classifier(crops.images[i : i + BATCH]).scores]
-    return Evaluation(
-        (),
-        np.array([(s.ok, s.hole, s.missing_weld) for s in scores]),
-        crops.labels,
-        np.array([is_nok(s) for s in scores]),
-        tuple(map(str, crops.names)),
-        crops.images if len(crops) <= KEPT_CROPS else None,
-    )
+    scores = class_scores(classifier, crops.images)
+    rows = zip(crops.names, crops.images, crops.labels, 1 - scores[:, OK], strict=True)
+    worst = _farthest([Worst(str(name), image, int(label), float(nok)) for name, image, label, nok in rows])
+    return Evaluation((), scores, crops.labels, refused(scores, thresholds), tuple(worst))
 
 
-def _unreadable(path: Path) -> str | None:
-    try:
-        read_image(path)
-    except ImageError as error:
-        return str(error)
-    return None
+def _farthest(crops: list[Worst]) -> list[Worst]:
+    return sorted(crops, key=lambda crop: -crop.wrongness)[:WORST]
 
 
 class _Collected:
-    """Segments as they come."""
+    """Segments as they come; of their pictures only the worst are kept."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple[str, tuple[float, float, float], int, bool]] = []
-        self._images: list[NDArray[np.uint8]] = []
+        self._rows: list[tuple[tuple[float, float, float], int, bool]] = []
+        self._worst: list[Worst] = []
         self._unjudged = 0
 
-    def add(self, name: str, image: NDArray[np.uint8], judged: Inspection, labels: list[int], refused: list[bool]) -> None:
+    def add(self, name: str, image: NDArray[np.uint8], judged: Inspection, labels: list[int], nok: list[bool]) -> None:
         """The segments of one part."""
         if judged.ring is None or not judged.scores:
             self._unjudged += sum(label > OK for label in labels)
             return
-        pictures = segments(unwrap(image, judged.ring)) if len(self._rows) < KEPT_CROPS else None
-        for index, (s, label, nok) in enumerate(zip(judged.scores, labels, refused, strict=True)):
+        pictures = segments(unwrap(image, judged.ring))
+        for index, (s, label, bad) in enumerate(zip(judged.scores, labels, nok, strict=True)):
             if label != IGNORED:
-                self._rows.append((f"{name}, segment {index + 1}", (s.ok, s.hole, s.missing_weld), label, nok))
-                if pictures is not None:
-                    self._images.append(pictures[index])
+                self._rows.append(((s.ok, s.hole, s.missing_weld), label, bad))
+                self._worst.append(Worst(f"{name}, segment {index + 1}", pictures[index], label, s.nok))
+        self._worst = _farthest(self._worst)
 
     def evaluation(self, parts: tuple[PartResult, ...]) -> Evaluation:
         """All of them."""
-        names, scores, labels, nok = zip(*self._rows, strict=True) if self._rows else ((), (), (), ())
+        scores, labels, nok = zip(*self._rows, strict=True) if self._rows else ((), (), ())
         return Evaluation(
             parts,
             np.array(scores, np.float64).reshape(-1, len(CLASSES)),
             np.array(labels, np.int64),
             np.array(nok, bool),
-            tuple(names),
-            np.stack(self._images) if self._images and len(self._images) == len(self._rows) else None,
+            tuple(self._worst),
             self._unjudged,
         )
 
 
-def _part(item: dict[str, Any], judged: Inspection, refused: list[bool], inspector: Inspector) -> PartResult:
+def _part(item: dict[str, Any], judged: Inspection, nok: list[bool], inspector: Inspector) -> PartResult:
     x, y = item["center"]
     ring = judged.ring
     found = []
@@ -151,7 +153,7 @@ def _part(item: dict[str, Any], judged: Inspection, refused: list[bool], inspect
         on = [i for i in range(SEGMENTS) if crop_label((defect,), i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) > OK]
         kind = CLASSES[HOLE] if defect.label == HOLE else CLASSES[-1]
         length = entry.get("length_mm")
-        found.append(Defect(kind, None if length is None else float(length), any(refused[i] for i in on)))
+        found.append(Defect(kind, None if length is None else float(length), any(nok[i] for i in on)))
     return PartResult(
         name=str(item["frame"]),
         truth=str(item["verdict"]),

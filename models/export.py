@@ -94,7 +94,7 @@ def export(network: WeldNet, path: Path, contract: Contract) -> None:
         wanted = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
     got = Classifier(part)(crops.numpy()[:, 0])
     pairs = zip(wanted, (np.array([(s.ok, s.hole, s.missing_weld) for s in got.scores]), got.maps, got.distances), strict=True)
-    _keep(part, path, max(_gap(a, b) for a, b in pairs))
+    keep(part, path, max(largest_gap(a, b) for a, b in pairs))
 
 
 def export_ring(network: RingNet, path: Path, version: str, data_hash: str) -> None:
@@ -104,7 +104,7 @@ def export_ring(network: RingNet, path: Path, version: str, data_hash: str) -> N
     part = write_onnx(network.eval(), bands, path, "bands", ("sectors",), metadata)
     with torch.no_grad():
         wanted = np.asarray(network(bands).numpy(), np.float64)
-    _keep(part, path, _gap(wanted, RingNetwork(part).sectors(bands.numpy()[:, 0])))
+    keep(part, path, largest_gap(wanted, RingNetwork(part).sectors(bands.numpy()[:, 0])))
 
 
 def read_network(path: Path) -> WeldNet:
@@ -139,19 +139,25 @@ def write_onnx(module: nn.Module, example: Tensor, path: Path, source: str, targ
             opset_version=17,
             dynamo=False,
         )
-    model = onnx.load(str(part))
-    for key, value in metadata.items():
-        entry = model.metadata_props.add()
-        entry.key, entry.value = key, value
-    onnx.save(model, str(part))
+    save(onnx.load(str(part)), part, metadata)
     return part
 
 
-def _gap(wanted: NDArray[np.float64], got: NDArray[np.floating]) -> float:
+def save(model: onnx.ModelProto, path: Path, metadata: dict[str, str]) -> None:
+    """Write a graph with what it says of itself."""
+    for key, value in metadata.items():
+        entry = model.metadata_props.add()
+        entry.key, entry.value = key, value
+    onnx.save(model, str(path))
+
+
+def largest_gap(wanted: NDArray[np.float64], got: NDArray[np.floating]) -> float:
+    """Largest difference, relative where the wanted value is above 1."""
     return float((np.abs(wanted - got) / np.maximum(1.0, np.abs(wanted))).max())
 
 
-def _keep(part: Path, path: Path, gap: float) -> None:
+def keep(part: Path, path: Path, gap: float) -> None:
+    """Let a checked file take its place. Raises LearningError if it differs from what it was made of by more than 1e-4."""
     if not gap <= TOLERANCE:
         part.unlink()
         raise LearningError(f"{path}: the exported file differs from the network by {gap:.2g}; nothing kept")

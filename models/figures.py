@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from io import BytesIO
-from pathlib import Path
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -55,8 +54,8 @@ def drift_curves(strength: Sequence[float], named: Mapping[str, tuple[Sequence[f
     return _png(figure)
 
 
-def sheet(images: NDArray[np.uint8], titles: Sequence[str], path: Path | None = None) -> bytes:
-    """PNG contact sheet of crops (N, 128, 128) with a title each; written to `path` too if one is given."""
+def sheet(images: Sequence[NDArray[np.uint8]], titles: Sequence[str]) -> bytes:
+    """PNG contact sheet of crops (128, 128) uint8 with a title each."""
     columns = min(6, max(1, len(images)))
     rows = -(-len(images) // columns)
     figure, axes = _canvas(rows, columns, (2.1 * columns, 2.35 * rows))
@@ -65,10 +64,7 @@ def sheet(images: NDArray[np.uint8], titles: Sequence[str], path: Path | None = 
     for axis, image, title in zip(axes, images, titles, strict=False):
         axis.imshow(image, cmap="gray", vmin=0, vmax=255)
         axis.set_title(title, fontsize=7)
-    content = _png(figure)
-    if path is not None:
-        path.write_bytes(content)
-    return content
+    return _png(figure)
 
 
 def _canvas(rows: int, columns: int, size: tuple[float, float]) -> tuple[Figure, list]:  # type: ignore[type-arg]

@@ -6,12 +6,11 @@ A lot is a folder with `labels.json` (what `weldgate-synth part` writes) and `fr
 
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +18,8 @@ from models.crops import HOLE, IGNORED, MISSING, OK, Crops, empty_maps
 from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, Ring
-from station.errors import LocateError
+from station.errors import ImageError, LocateError
+from station.imagefile import read_image
 from station.vision.unwrap import unwrap
 
 MIN_OVERLAP = 0.2
@@ -74,31 +74,42 @@ def crop_label(defects: tuple[Defect, ...], start_deg: float, end_deg: float) ->
     return IGNORED if label == OK and touched else label
 
 
-def read_lot(folder: Path, progress: Callable[[], None] = lambda: None) -> list[LabelledStrip]:
-    """Strips of all parts, cut at the labelled ring. Raises LearningError listing all that is wrong, before any strip is cut."""
-    strips = []
-    for item in read_labels(folder):
-        image = cv2.imread(str(folder / "frames" / item["frame"]), cv2.IMREAD_GRAYSCALE)
-        if image is None:
-            raise LearningError(f"{folder / 'frames' / item['frame']}: not a readable image")
-        ring = Ring(item["center"][0], item["center"][1], item["radius"], 1.0)
+def frames(folder: Path, items: Sequence[dict[str, Any]]) -> Iterator[tuple[dict[str, Any], NDArray[np.uint8]]]:
+    """Entries of a lot with their images (H, W) uint8, read as the station reads them.
+
+    Raises LearningError at the end, listing all that are not readable.
+    """
+    wrong = []
+    for item in items:
         try:
-            strips.append(LabelledStrip(item["frame"], unwrap(np.asarray(image, np.uint8), ring), defects_of(item)))
+            yield item, read_image(folder / "frames" / str(item["frame"]))
+        except ImageError as error:
+            wrong.append(str(error))
+    if wrong:
+        raise LearningError(listed(folder, wrong))
+
+
+def read_lot(folder: Path) -> list[LabelledStrip]:
+    """Strips of all parts, cut at the labelled ring. Raises LearningError listing all that is wrong."""
+    strips, outside = [], []
+    for item, image in frames(folder, read_labels(folder)):
+        try:
+            strip = unwrap(image, Ring(item["center"][0], item["center"][1], item["radius"], 1.0))
         except LocateError as error:
-            raise LearningError(f"{folder / 'frames' / item['frame']}: {error}; correct its label") from None
-        progress()
+            outside.append(f"{item['frame']}: {error}; correct its label")
+            continue
+        strips.append(LabelledStrip(str(item["frame"]), strip, defects_of(item)))
+    if outside:
+        raise LearningError(listed(folder, outside))
     return strips
 
 
 def read_images(folder: Path) -> list[tuple[NDArray[np.uint8], float, float, float]]:
     """Images of a lot with the true circle: (image, centre x, centre y, radius), px. Raises LearningError."""
-    found = []
-    for item in read_labels(folder):
-        image = cv2.imread(str(folder / "frames" / str(item["frame"])), cv2.IMREAD_GRAYSCALE)
-        if image is None:
-            raise LearningError(f"{folder / 'frames' / str(item['frame'])}: not a readable image")
-        found.append((np.asarray(image, np.uint8), float(item["center"][0]), float(item["center"][1]), float(item["radius"])))
-    return found
+    return [
+        (image, float(item["center"][0]), float(item["center"][1]), float(item["radius"]))
+        for item, image in frames(folder, read_labels(folder))
+    ]
 
 
 def window_crops(strips: Sequence[LabelledStrip], step_px: int, rng: np.random.Generator | None) -> Crops:

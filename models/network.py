@@ -1,4 +1,4 @@
-"""The network, normalisation included: uint8 crops in; class logits, a coarse defect map and features out."""
+"""The network, normalisation included: uint8 crops in; class logits, a coarse defect map and statistics of its look out."""
 
 import torch
 from torch import Tensor, nn
@@ -55,7 +55,7 @@ class _Up(nn.Module):
 class WeldNet(nn.Module):
     """Down to 8 x 8, back up to 32 x 32 for the map; the classes see both ends and the strongest point of the map.
 
-    One network classifies and locates, so that verdict and map can never contradict each other's features.
+    One network classifies and locates, so that verdict and map come from the same features.
     """
 
     def __init__(self) -> None:

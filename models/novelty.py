@@ -1,4 +1,4 @@
-"""What the training images look like in the network's features, so that the station can tell when its own begin to differ."""
+"""What the training images look like to the network's first layers, so that the station can tell when its own begin to differ."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,19 +14,19 @@ MARGIN = 1.1
 """The limit lies this factor above them: a line's parts are alike, and one alarm for each is of no use."""
 
 
-def describe(features: Array) -> tuple[Array, Array]:
-    """Mean (D,) and whitening (D, D) of features (N, D): `(features - mean) @ whitening` has about unit covariance.
+def describe(statistics: Array) -> tuple[Array, Array]:
+    """Mean (D,) and whitening (D, D) of statistics (N, D): `(statistics - mean) @ whitening` has about unit covariance.
 
-    The covariance is shrunk after Ledoit and Wolf (2004), so that features that hardly vary do not rule the distance.
+    The covariance is shrunk after Ledoit and Wolf (2004), so that statistics that hardly vary do not rule the distance.
     """
-    found = LedoitWolf().fit(features)
+    found = LedoitWolf().fit(statistics)
     values, vectors = np.linalg.eigh(found.covariance_)
     return np.asarray(found.location_), np.asarray(vectors / np.sqrt(np.maximum(values, 1e-9)) @ vectors.T)
 
 
-def distances(features: Array, mean: Array, whitening: Array) -> Array:
-    """Mean squared distance (N,) of features to the training crops; about 1 for these."""
-    away = (features - mean) @ whitening
+def distances(statistics: Array, mean: Array, whitening: Array) -> Array:
+    """Mean squared distance (N,) of statistics to those of the training crops; about 1 for these."""
+    away = (statistics - mean) @ whitening
     return np.asarray((away * away).mean(axis=1))
 
 

@@ -18,7 +18,6 @@ from models.measures import ESCAPE_COST, calibration_error, count, interval
 from station.classify.onnx import CLASSES
 
 SIZES_MM = (0.0, 0.15, 0.3, 0.6, 1.2, 1e9)
-WORST = 24
 
 
 def summary(found: Evaluation) -> dict[str, Any]:
@@ -136,11 +135,10 @@ def write_report(found: Evaluation, folder: Path, title: str, facts: dict[str, s
         sections.append("<h2>Defects found, by kind and length</h2>")
         rows = [(d["kind"], _span(d), f"{d['found']} of {d['of']}") for d in figures["defects"]]
         sections.append(_table(rows, ("kind", "length", "found")))
-    if found.images is not None:
-        worst = np.argsort(np.where(truth, nok, 1 - nok))[:WORST]
-        titles = [f"{found.names[i]}\n{CLASSES[found.labels[i]]}: p(NOK) {nok[i]:.2f}" for i in worst]
+    if found.worst:
+        titles = [f"{w.name}\n{CLASSES[w.label]}: score of NOK {w.nok:.2f}" for w in found.worst]
         sections.append("<h2>Worst crops: farthest from their truth first</h2>")
-        sections.append(_image(sheet(found.images[worst], titles), "worst crops"))
+        sections.append(_image(sheet([w.image for w in found.worst], titles), "worst crops"))
     style = (
         "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
         "table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #bbb;padding:.25em .7em;text-align:left}img{max-width:100%}"

@@ -10,12 +10,11 @@ import numpy as np
 import onnx
 from onnx import TensorProto, compose, helper
 
-from models.errors import LearningError
+from models.export import keep, largest_gap, save
 from station.classify.onnx import RingNetwork
 from station.vision.polar import COLUMNS, ROWS, SECTORS
 
 FIRST_WEIGHT = 3.0
-TOLERANCE = 1e-4
 
 
 def pair_rings(first: Path, second: Path, out: Path, version: str) -> None:
@@ -32,21 +31,14 @@ def pair_rings(first: Path, second: Path, out: Path, version: str) -> None:
     graph = helper.make_graph(nodes, "rings", list(a.graph.input), [target], [*a.graph.initializer, *b.graph.initializer, *values])
     model = helper.make_model(graph, opset_imports=list(a.opset_import), ir_version=a.ir_version)
     hashes = [parent.get("weldgate.data_hash", "unknown") for parent in parents]
-    for key, value in (("weldgate.version", version), ("weldgate.data_hash", "+".join(hashes))):
-        entry = model.metadata_props.add()
-        entry.key, entry.value = key, value
     out.mkdir(parents=True, exist_ok=True)
     part = out / "ring.part.onnx"
-    onnx.save(model, str(part))
+    save(model, part, {"weldgate.version": version, "weldgate.data_hash": "+".join(hashes)})
     band = np.random.default_rng(0).integers(0, 256, (ROWS, COLUMNS), dtype=np.uint8)[None]
     (o1, p1), (o2, p2) = (network.sectors(band)[0] for network in networks)
     weight = FIRST_WEIGHT * p1
     wanted = np.stack([(weight * o1 + p2 * o2) / (weight + p2 + 1e-6), (p1 + p2) / 2])
-    gap = float(np.abs(RingNetwork(part).sectors(band)[0] - wanted).max())
-    if not gap <= TOLERANCE * max(1.0, float(np.abs(wanted).max())):
-        part.unlink()
-        raise LearningError(f"{out / 'ring.onnx'}: differs from the two networks by {gap:.2g}; nothing kept")
-    part.replace(out / "ring.onnx")
+    keep(part, out / "ring.onnx", largest_gap(wanted, RingNetwork(part).sectors(band)[0]))
     facts = [
         {"version": p.get("weldgate.version"), "data_hash": h, "sha256": n.file_hash}
         for p, h, n in zip(parents, hashes, networks, strict=True)

@@ -15,18 +15,18 @@ from models.crops import HOLE, MISSING, OK, Crops, only
 from models.errors import LearningError
 from models.export import Contract, export, read_network
 from models.fit import Plan, Report, fit, predict
-from models.labelled import data_hash, read_lot, split_by_part, station_crops, window_crops
+from models.labelled import WINDOW_STEP_PX, data_hash, read_lot, split_by_part, station_crops, window_crops
 from models.measures import ESCAPE_COST, calibration_error, choose_thresholds, count, line_weights, prior_shift, refused, shifted
 from models.network import WeldNet
 from models.novelty import describe, distances, limit, part_distances
 from models.rendered import read_rendered
+from models.scores import class_scores
 from station.classify.decision import Thresholds
 from station.classify.onnx import Classifier
 
 RENDERED = "The network has seen rendered images only."
 FINE_TUNED = "Fine-tuned on a line's own labelled images, those of other parts held out."
 FINE_TUNING = Plan(steps=600, learning_rate=0.0005, hardness=0.0, unseen_loss=None)
-BATCH = 256
 
 
 def train(folders: Sequence[Path], out: Path, version: str, plan: Plan, kinds: Sequence[int], report: Report) -> dict[str, Any]:
@@ -52,13 +52,13 @@ def fine_tune(lot: Path, model: Path | None, out: Path, version: str, seed: int,
     card's figures are those of the test parts, crops as the station cuts them. Raises LearningError, ModelError.
     """
     train_strips, validation_strips, test_strips = split_by_part(read_lot(lot), seed)
-    training = window_crops(train_strips, 10, np.random.default_rng(seed))
+    training = window_crops(train_strips, WINDOW_STEP_PX, np.random.default_rng(seed))
     plan = replace(FINE_TUNING, seed=seed) if model is not None else Plan(steps=2000, unseen_loss=None, seed=seed)
     torch.manual_seed(seed)
     start = perf_counter()
     network = fit(WeldNet() if model is None else read_network(model), training, plan, report)
     seconds = perf_counter() - start
-    validation = window_crops(validation_strips, 10, None)
+    validation = window_crops(validation_strips, WINDOW_STEP_PX, None)
     judged = station_crops(test_strips)
     return release(network, training, validation, out, version, data_hash([lot]), plan, seconds, FINE_TUNED, judged)
 
@@ -77,11 +77,11 @@ def release(
 ) -> dict[str, Any]:
     """Choose thresholds on `held`, describe the training images, write and check the file; figures on `judged`, by default `held`."""
     shift = prior_shift(plan.shares)
-    raw, held_features = predict(network, held.images)
+    raw, held_statistics = predict(network, held.images)
     scores = shifted(raw, shift)
     thresholds = choose_thresholds(scores, held.labels)
     mean, whitening = describe(predict(network, training.images)[1])
-    novelty_limit = limit(part_distances(distances(held_features, mean, whitening), held.parts))
+    novelty_limit = limit(part_distances(distances(held_statistics, mean, whitening), held.parts))
     out.mkdir(parents=True, exist_ok=True)
     export(network, out / "weldgate.onnx", Contract(version, digest, thresholds, mean, whitening, novelty_limit, shift))
     crops = held if judged is None else judged
@@ -94,20 +94,13 @@ def release(
         "held_out_crops": len(crops),
         "weights": sum(p.numel() for p in network.parameters()),
         "thresholds": asdict(thresholds),
-        "held_out": figures(file_scores(out / "weldgate.onnx", crops.images), crops.labels, thresholds),
+        "held_out": figures(class_scores(Classifier(out / "weldgate.onnx"), crops.images), crops.labels, thresholds),
         "novelty_limit": novelty_limit,
         "seconds": seconds,
         "plan": asdict(plan),
     }
     write_card(out, card)
     return card
-
-
-def file_scores(path: Path, images: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """Scores (N, 3) of crops (N, 128, 128) through the file and the station's reader."""
-    classifier = Classifier(path)
-    chunks = [classifier(images[i : i + BATCH]).scores for i in range(0, len(images), BATCH)]
-    return np.array([(s.ok, s.hole, s.missing_weld) for chunk in chunks for s in chunk])
 
 
 def figures(scores: NDArray[np.float64], labels: NDArray[np.int64], thresholds: Thresholds) -> dict[str, float]:

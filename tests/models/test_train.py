@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from models.__main__ import main
+from models.card import card_text
 from models.crops import HOLE
 from models.detection import boxes, evaluate_boxes
 from models.errors import LearningError
@@ -16,6 +17,7 @@ from models.quantize import quantize
 from models.rendered import read_rendered
 from models.train import train
 from station.classify.onnx import Classifier
+from tests.conftest import MODEL
 from tests.models.made import crops, dataset
 
 SMALL = Plan(steps=160, batch=24, average=0.95, learning_rate=0.004)
@@ -45,6 +47,14 @@ def test_a_run_learns_and_leaves_a_file_and_its_card(run: Path) -> None:
     assert classifier.card.version == "9.9"
     assert classifier.card.novelty_limit == card["novelty_limit"]
     assert sorted(p.name for p in run.iterdir()) == ["CARD.md", "run.json", "weldgate.onnx"]
+
+
+def test_the_shipped_card_is_that_of_its_run_and_of_its_file() -> None:
+    card = json.loads((MODEL.parent / "run.json").read_text())
+    assert (MODEL.parent / "CARD.md").read_text() == card_text(card)
+    says = Classifier(MODEL).card
+    assert (says.version, says.data_hash, says.novelty_limit) == (card["version"], card["data_hash"], card["novelty_limit"])
+    assert {"hole": says.hole_threshold, "missing_weld": says.missing_threshold} == card["thresholds"]
 
 
 def test_the_map_shows_where_the_defect_is(run: Path) -> None:
@@ -131,3 +141,11 @@ def test_a_users_mistake_is_one_line(command: list[str], tmp_path: Path, capsys:
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert "absent" in said
+
+
+@pytest.mark.parametrize(("option", "value"), [("--steps", "0"), ("--seeds", "-1")])
+def test_numbers_out_of_range_are_refused_before_any_work(
+    option: str, value: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["train", str(tmp_path), "--out", str(tmp_path / "x"), option, value]) == 2
+    assert capsys.readouterr().err.startswith(f"weldgate-models: {option} is {value}; ")
