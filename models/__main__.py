@@ -95,10 +95,14 @@ def _parser() -> argparse.ArgumentParser:
     drift.add_argument(
         "--model", type=Path, default=SHIPPED / "weldgate.onnx", metavar="FILE", help="classifier (default: the shipped one)"
     )
+    drift.add_argument("--reference", type=Path, metavar="FILE", help="of other, good parts of the same line, from first-day")
     drift.add_argument("--out", type=Path, required=True, metavar="DIR", help="where drift.png and drift.json go")
 
     first = add("first-day", _first_day, "check thresholds and images with OK parts alone, before production begins")
     first.add_argument("paths", type=Path, nargs="+", metavar="PATH", help="images of parts known to be OK, or folders of them")
+    first.add_argument(
+        "--reference", type=Path, metavar="FILE", help="write the look of these parts, for model.reference_path: at least 20 parts"
+    )
     _network_options(first)
     return parser
 
@@ -240,11 +244,14 @@ def _export(arguments: argparse.Namespace) -> int:
 
 def _drift(arguments: argparse.Namespace) -> int:
     from models.drift import DRIFTS, STRENGTHS, drift, write_drift
-    from station.classify.onnx import Classifier
+    from station.classify.drift import read_reference
+    from station.classify.onnx import LOOK, Classifier
 
     classifier = Classifier(arguments.model)
+    path = arguments.reference
+    reference = None if path is None else read_reference(path, classifier.card.file_hash, LOOK)
     with _progress("drifting", len(DRIFTS) * len(STRENGTHS)) as advance:
-        steps = drift(arguments.lot, classifier, advance)
+        steps = drift(arguments.lot, classifier, reference, advance)
     for s in steps:
         _say(f"{s.drift:26} {s.strength:4.2f}  recall {s.segments.recall:.3f}  F2 {s.segments.f2:.3f}  alarms {s.alarms:.0%}")
     write_drift(steps, arguments.out)
@@ -254,14 +261,20 @@ def _drift(arguments: argparse.Namespace) -> int:
 
 def _first_day(arguments: argparse.Namespace) -> int:
     from models.first_day import first_day
+    from models.reference import make_reference
+    from station.classify.drift import write_reference
     from station.replay import image_files
 
     inspector = _inspector(arguments)
     files = image_files(arguments.paths)
     with _progress("judging", len(files)) as advance:
         found = first_day(files, inspector, inspector.card.novelty_limit, advance)
+    if arguments.reference is not None and found.good:
+        write_reference(arguments.reference, make_reference(found.looks, inspector.card.file_hash))
     for line in found.lines():
         _say(line)
+    if arguments.reference is not None:
+        _say(f"reference: {arguments.reference}" if found.good else "no reference written: remove or correct the parts named above")
     return 0 if found.good else 1
 
 

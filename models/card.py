@@ -36,7 +36,7 @@ def card_text(card: dict[str, Any]) -> str:
         f"{card['provenance']} The figures say nothing of a real line: measure there before release\n"
         "(`weldgate-models evaluate`, `weldgate-models first-day`).\n\n"
         "Input `crops` uint8 (K, 1, 128, 128): crops of the unwrapped weld, row 0 outermost. Outputs: `probabilities` (K, 3) of ok, hole,\n"
-        "missing_weld; `maps` (K, 2, 32, 32), the share of each cell of 4 x 4 px that a hole or a missing weld covers; `distances` (K,),\n"
-        "the mean squared distance of each crop's look to that of the training crops.\n\n"
+        "missing_weld; `maps` (K, 2, 32, 32), the share of each cell of 4 x 4 px that a hole or a missing weld covers; `looks` (K, 192),\n"
+        "statistics of what each crop looks like, of mean 0 and covariance 1 over the training crops.\n\n"
         f"```json\n{json.dumps({'plan': card['plan']}, indent=1)}\n```\n"
     )

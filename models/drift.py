@@ -13,11 +13,12 @@ from models.crops import IGNORED, OK
 from models.labelled import LabelledStrip, read_lot
 from models.measures import Counts, count
 from station.classify.decision import Thresholds, segment_kind
+from station.classify.drift import DriftWatch, Reference
 from station.classify.onnx import Classifier
 from station.domain import SEGMENT_PX, SEGMENTS
 from station.vision.unwrap import segments
 
-STRENGTHS = (0.0, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0)
+STRENGTHS = (0.0, 0.15, 0.3, 0.45, 0.6, 0.8, 0.9, 1.0)
 Strip = NDArray[np.float32]
 
 
@@ -29,7 +30,7 @@ class Step:
     strength: float
     segments: Counts
     alarms: float
-    """Share of the parts that are reported as unlike the training images."""
+    """Share of the parts that are reported: unlike the training images, or drifting from the reference."""
 
 
 def _dimmer(strip: Strip, strength: float, rng: np.random.Generator) -> Strip:
@@ -77,14 +78,14 @@ DRIFTS: dict[str, Callable[[Strip, float, np.random.Generator], Strip]] = {
 }
 
 
-def drift(lot: Path, classifier: Classifier, progress: Callable[[], None] = lambda: None) -> list[Step]:
-    """Judge a lot under each drift at each strength. Raises LearningError."""
+def drift(lot: Path, classifier: Classifier, reference: Reference | None, progress: Callable[[], None] = lambda: None) -> list[Step]:
+    """Judge a lot under each drift at each strength; without a reference no drift is watched for. Raises LearningError."""
     strips = read_lot(lot)
     limits = Thresholds(classifier.card.hole_threshold, classifier.card.missing_threshold)
     steps = []
     for name, change in DRIFTS.items():
         for strength in STRENGTHS:
-            steps.append(_step(name, strength, change, strips, classifier, limits))
+            steps.append(_step(name, strength, change, strips, classifier, limits, reference))
             progress()
     return steps
 
@@ -96,20 +97,33 @@ def _step(
     strips: list[LabelledStrip],
     classifier: Classifier,
     limits: Thresholds,
+    reference: Reference | None,
 ) -> Step:
     rng = np.random.default_rng(0)
-    nok, truth, alarms = [], [], 0
+    nok, truth, novel, looks = [], [], [], []
     for strip in strips:
         drifted = change(strip.strip.astype(np.float32), strength, rng) if strength > 0 else strip.strip
         changed = np.clip(drifted, 0, 255).astype(np.uint8)
         judged = classifier(segments(changed))
-        alarms += float(judged.distances.mean()) ** 0.5 > classifier.card.novelty_limit
+        novel.append(judged.novelty > classifier.card.novelty_limit)
+        looks.append(judged.looks.mean(axis=0, dtype=np.float64))
         for index in range(SEGMENTS):
             label = strip.crop_label(index * SEGMENT_PX)
             if label != IGNORED:
                 nok.append(segment_kind(judged.scores[index], limits) is not None)
                 truth.append(label != OK)
-    return Step(name, strength, count(np.array(nok), np.array(truth)), alarms / len(strips))
+    told = [a or b for a, b in zip(novel, _drifting(looks, reference), strict=True)]
+    return Step(name, strength, count(np.array(nok), np.array(truth)), sum(told) / len(told))
+
+
+def _drifting(looks: list[NDArray[np.float64]], reference: Reference | None) -> list[bool]:
+    """Of each part whether the watch gives the alarm, once the parts before it have drifted as well."""
+    if reference is None:
+        return [False] * len(looks)
+    watch = DriftWatch(reference)
+    for look in looks:
+        watch.part(look)
+    return [watch.part(look).alarm for look in looks]
 
 
 def write_drift(steps: list[Step], out: Path) -> None:

@@ -56,7 +56,7 @@ class Contract:
 
 
 class Shipped(nn.Module):
-    """The network as the station runs it: probabilities, defect map, distance of the statistics to those of the training images."""
+    """The network as the station runs it: probabilities, defect map, statistics of the look, whitened over the training images."""
 
     def __init__(self, network: WeldNet, prior_shift: tuple[float, float, float]) -> None:
         super().__init__()
@@ -66,10 +66,9 @@ class Shipped(nn.Module):
         self.whiten = nn.Linear(STATISTICS, STATISTICS)
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Crops (K, 1, 128, 128) uint8 to probabilities (K, 3), map (K, 2, 32, 32) 0..1, mean squared distances (K,)."""
+        """Crops (K, 1, 128, 128) uint8 to probabilities (K, 3), map (K, 2, 32, 32) 0..1, looks (K, 192)."""
         logits, where, statistics = self.network(crops)
-        away = self.whiten(statistics)
-        return torch.softmax(logits + self.prior_shift, dim=1), torch.sigmoid(where), (away * away).mean(dim=1)
+        return torch.softmax(logits + self.prior_shift, dim=1), torch.sigmoid(where), self.whiten(statistics)
 
 
 def fused(network: WeldNet) -> WeldNet:
@@ -89,11 +88,11 @@ def export(network: WeldNet, path: Path, contract: Contract) -> None:
         whole.whiten.weight.copy_(torch.from_numpy(contract.whitening.T))
         whole.whiten.bias.copy_(torch.from_numpy(-contract.mean @ contract.whitening))
     crops = torch.from_numpy(_example((21, 1, SEGMENT_PX, SEGMENT_PX)))
-    part = write_onnx(whole, crops, path, "crops", ("probabilities", "maps", "distances"), contract.metadata())
+    part = write_onnx(whole, crops, path, "crops", ("probabilities", "maps", "looks"), contract.metadata())
     with torch.no_grad():
         wanted = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
     got = Classifier(part)(crops.numpy()[:, 0])
-    pairs = zip(wanted, (np.array([(s.ok, s.hole, s.missing_weld) for s in got.scores]), got.maps, got.distances), strict=True)
+    pairs = zip(wanted, (np.array([(s.ok, s.hole, s.missing_weld) for s in got.scores]), got.maps, got.looks), strict=True)
     keep(part, path, max(largest_gap(a, b) for a, b in pairs))
 
 
@@ -152,8 +151,8 @@ def save(model: onnx.ModelProto, path: Path, metadata: dict[str, str]) -> None:
 
 
 def largest_gap(wanted: NDArray[np.float64], got: NDArray[np.floating]) -> float:
-    """Largest difference, relative where the wanted value is above 1."""
-    return float((np.abs(wanted - got) / np.maximum(1.0, np.abs(wanted))).max())
+    """Largest difference, as a share of the largest wanted value if that is above 1."""
+    return float(np.abs(wanted - got).max() / max(1.0, np.abs(wanted).max()))
 
 
 def keep(part: Path, path: Path, gap: float) -> None:

@@ -26,6 +26,8 @@ class FirstDay:
     novelty: NDArray[np.float64]
     limit: float
     not_judged: tuple[str, ...]
+    looks: NDArray[np.float64]
+    """(N, 192)"""
 
     @property
     def good(self) -> bool:
@@ -57,7 +59,7 @@ class FirstDay:
 
 def first_day(paths: Sequence[Path], inspector: Inspector, limit: float, progress: Callable[[], None] = lambda: None) -> FirstDay:
     """Judge images of parts known to be OK. Raises ImageError."""
-    names, room, novelty, failed = [], [], [], []
+    names, room, novelty, failed, looks = [], [], [], [], []
     thresholds = inspector.thresholds
     for path in paths:
         judged = inspector.inspect(read_image(path))
@@ -68,5 +70,6 @@ def first_day(paths: Sequence[Path], inspector: Inspector, limit: float, progres
             over = [max(s.hole / thresholds.hole, s.missing_weld / thresholds.missing_weld) for s in judged.scores]
             room.append(max(1.0, max(over)) if judged.verdict is Verdict.NOK else max(over))
             novelty.append(judged.novelty)
+            looks.append(judged.look)
         progress()
-    return FirstDay(tuple(names), np.array(room), np.array(novelty), limit, tuple(failed))
+    return FirstDay(tuple(names), np.array(room), np.array(novelty), limit, tuple(failed), np.array(looks))

@@ -10,8 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
+import numpy as np
+
 from station.archive import Archive, Pending
 from station.camera.port import Camera
+from station.classify.drift import Drift, DriftWatch
 from station.domain import Frame, Inspection, Origin, Reason, Timing, Verdict
 from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError
 from station.events import Counts, Event, PartEvent, Preview, StatusEvent
@@ -66,6 +69,8 @@ class Cycle:
         self._alive_s = 0.0
         self._status_s = 0.0
         self._counts = Counts()
+        self._watch = None if inspector.reference is None else DriftWatch(inspector.reference)
+        self._drift: Drift | None = None
 
     def run(self, stop: threading.Event) -> None:
         """Serve triggers until `stop`; closes the camera at the end."""
@@ -108,7 +113,8 @@ class Cycle:
             offline = Offline.CAMERA_LOST
         elif not room:
             offline = Offline.ARCHIVE_FULL
-        return Health(offline is Offline.NONE, offline, offline is not Offline.NONE, self._provenance.config_crc)
+        drifting = self._drift is not None and self._drift.alarm
+        return Health(offline is Offline.NONE, offline, offline is not Offline.NONE, self._provenance.config_crc, drifting)
 
     def _tell_status(self) -> None:
         now = time.monotonic()
@@ -143,6 +149,7 @@ class Cycle:
         pending = self._archive.begin(frame)
         if frame is not None:
             inspection = self._judge(frame, inspection.timing)
+            self._see_drift(inspection)
         start = time.perf_counter()
         record = self._record(trigger, pending, inspection)
         record_ms = (time.perf_counter() - start) * 1000
@@ -163,9 +170,18 @@ class Cycle:
                 record.serial,
                 record.inspection.novelty,
             )
-        self._listener.event(PartEvent(record, self._seg_nok(record.inspection), novel, shown, record_ms, publish_ms))
+        self._listener.event(PartEvent(record, self._seg_nok(record.inspection), novel, self._drift, shown, record_ms, publish_ms))
         if frame is not None:
             self._listener.preview(make_preview(record.inspection_id, frame.image, record.inspection.ring))
+
+    def _see_drift(self, inspection: Inspection) -> None:
+        if self._watch is None or not inspection.look:
+            return
+        before, self._drift = self._drift, self._watch.part(np.array(inspection.look))
+        if self._drift.alarm and not (before is not None and before.alarm):
+            log.warning("the pictures drift (%.2f, limit %.2f); check light, focus and surface", self._drift.value, self._drift.limit)
+        elif before is not None and before.alarm and not self._drift.alarm:
+            log.info("the pictures are as they were (%.2f)", self._drift.value)
 
     def _mark(self, record: Record, shown: bool) -> None:
         try:
@@ -225,6 +241,11 @@ class Cycle:
         inspection = record.inspection
         nok, novel = self._seg_nok(inspection), self._inspector.is_novel(inspection)
         reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]
+        flags = Flags.SIMULATED if self._origin is Origin.SIMULATED else Flags(0)
+        if novel:
+            flags |= Flags.NOVEL
+        if self._drift is not None and self._drift.alarm:
+            flags |= Flags.DRIFT
         return Result(
             trigger=trigger,
             verdict=verdict_code(inspection.verdict, self._origin),
@@ -234,7 +255,7 @@ class Cycle:
             seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
             seg_nok_mask=sum(1 << i for i, bad in enumerate(nok) if bad),
             seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
-            flags=(Flags.SIMULATED if self._origin is Origin.SIMULATED else Flags(0)) | (Flags.NOVEL if novel else Flags(0)),
+            flags=flags,
         )
 
     def _count(self, verdict: Verdict) -> None:

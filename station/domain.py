@@ -144,6 +144,8 @@ class Inspection:
     timing: Timing = field(default_factory=Timing)
     novelty: float | None = None
     """Distance of the look of the part's crops to that of the training images; about 1 for these."""
+    look: tuple[float, ...] = ()
+    """What the part looks like, whatever it shows: mean over its crops, of mean 0 and covariance 1 over the training crops."""
 
     def __post_init__(self) -> None:
         if self.verdict is Verdict.OK and (len(self.scores) != SEGMENTS or self.ring is None or self.reason is not None):

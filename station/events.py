@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 
 from pydantic import ConfigDict
 
+from station.classify.drift import Drift
 from station.domain import Origin
 from station.plc.registers import Offline
 from station.records import Record
@@ -47,6 +48,8 @@ class PartEvent:
     seg_nok: tuple[bool, ...]
     novel: bool
     """The picture is unlike all training images: its verdict deserves less trust, and the line a look."""
+    drift: Drift | None
+    """How far the last parts look from the line's reference; None: not watched, or no part was judged yet."""
     shown_to_plc: bool
     """False: the result came too late or was refused; the PLC saw ERROR or nothing."""
     record_ms: float

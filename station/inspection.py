@@ -1,18 +1,21 @@
 """Frame to verdict: locate, unwrap, quality gate, classify, decide. No device, no file."""
 
-from math import sqrt
 from time import perf_counter
 
 import numpy as np
 
 from station.classify.decision import Thresholds, findings, mean_of, near_threshold, segment_kind
-from station.classify.onnx import Classifier, RingNetwork
+from station.classify.drift import read_reference
+from station.classify.onnx import LOOK, Classifier, RingNetwork
 from station.domain import Image, Inspection, Reason, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
 from station.settings import ModelSettings, QualitySettings, WeldSettings
 from station.vision.locate import Expected, locate
 from station.vision.quality import gate, measure
 from station.vision.unwrap import segments, unwrap
+
+LOOK_DECIMALS = 3
+"""Of a part's look; its components are about 1."""
 
 
 class Inspector:
@@ -21,6 +24,7 @@ class Inspector:
     def __init__(
         self, ring_network: RingNetwork, classifier: Classifier, weld: WeldSettings, quality: QualitySettings, model: ModelSettings
     ) -> None:
+        """Raises ModelError if the settings name a reference that does not fit."""
         self._ring_network = ring_network
         self.classifier = classifier
         self._weld = weld
@@ -28,6 +32,8 @@ class Inspector:
         px_per_mm = 1000.0 / weld.um_per_px
         self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
         self.card = card = classifier.card
+        path = model.reference_path
+        self.reference = None if path is None else read_reference(path, card.file_hash, LOOK)
         self.thresholds = Thresholds(
             hole=card.hole_threshold if model.hole_threshold is None else model.hole_threshold,
             missing_weld=card.missing_threshold if model.missing_threshold is None else model.missing_threshold,
@@ -78,7 +84,8 @@ class Inspector:
             scores=scores,
             findings=found,
             timing=Timing(grab_ms, locate_ms, unwrap_ms, _ms(start)),
-            novelty=sqrt(float(judged.distances.mean())),
+            novelty=judged.novelty,
+            look=tuple(np.round(judged.looks.mean(axis=0, dtype=np.float64), LOOK_DECIMALS).tolist()),
         )
 
     def _look_twice(self, crops: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:

@@ -74,6 +74,8 @@ class ModelSettings(Section):
 
     path: Path = Path("weldgate.onnx")
     ring_path: Path = Path("ring.onnx")
+    reference_path: Path | None = None
+    """Look of the line's own good parts; without it drifting pictures are not watched for."""
     threads: int = Field(default=2, ge=1, le=64)
     hole_threshold: Share | None = None
     missing_threshold: Share | None = None
@@ -151,8 +153,10 @@ def _first(error: ValidationError) -> str:
 
 
 def _anchored(settings: Settings, folder: Path) -> Settings:
+    model = settings.model
+    files = {"path": model.path, "ring_path": model.ring_path, "reference_path": model.reference_path}
     changes: dict[str, Section] = {
-        "model": settings.model.model_copy(update={"path": folder / settings.model.path, "ring_path": folder / settings.model.ring_path}),
+        "model": model.model_copy(update={key: folder / path for key, path in files.items() if path is not None}),
         "archive": settings.archive.model_copy(update={"folder": folder / settings.archive.folder}),
     }
     if isinstance(settings.camera, ReplaySettings):

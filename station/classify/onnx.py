@@ -21,6 +21,8 @@ from station.vision.polar import COLUMNS, ROWS, SECTORS
 Array = NDArray[np.float64]
 
 CLASSES = ("ok", "hole", "missing_weld")
+LOOK = 192
+"""Length of the vector that tells what a crop looks like."""
 METADATA_KEYS = ("weldgate.classes", "weldgate.thresholds", "weldgate.novelty_limit", "weldgate.data_hash", "weldgate.version")
 
 
@@ -46,8 +48,13 @@ class Judged:
     scores: tuple[SegmentScores, ...]
     maps: NDArray[np.float32]
     """Share of each cell that a hole or a missing weld covers, (K, 2, 32, 32)."""
-    distances: NDArray[np.float32]
-    """Mean squared distance of the look of each crop to that of the training crops, (K,); about 1 for these."""
+    looks: NDArray[np.float32]
+    """What each crop looks like (K, 192), of mean 0 and covariance 1 over the training crops."""
+
+    @property
+    def novelty(self) -> float:
+        """Root mean squared distance of all looks to those of the training crops; about 1 for these."""
+        return float(np.sqrt((self.looks.astype(np.float64) ** 2).mean()))
 
 
 class Network:
@@ -89,14 +96,14 @@ class Classifier:
 
     def __call__(self, crops: Image) -> Judged:
         """Judge crops (K, 128, 128) uint8. Raises ModelError if the answer is not K times finite probabilities."""
-        p, maps, distances = self._network.run(("probabilities", "maps", "distances"), {"crops": crops[:, None]})
-        fit = p.shape == (len(crops), 3) and maps.shape == (len(crops), 2, CELLS, CELLS) and distances.shape == (len(crops),)
+        p, maps, looks = self._network.run(("probabilities", "maps", "looks"), {"crops": crops[:, None]})
+        fit = p.shape == (len(crops), 3) and maps.shape == (len(crops), 2, CELLS, CELLS) and looks.shape == (len(crops), LOOK)
         if not fit:
-            raise ModelError(f"inference gave no probabilities, maps and distances (shapes {p.shape}, {maps.shape}, {distances.shape})")
+            raise ModelError(f"inference gave no probabilities, maps and looks (shapes {p.shape}, {maps.shape}, {looks.shape})")
         sound = all(((a >= 0) & (a <= 1)).all() for a in (p, maps)) and bool((np.abs(p.sum(axis=1) - 1) <= 1e-3).all())
-        if not (sound and np.isfinite(distances).all()):
+        if not (sound and np.isfinite(looks).all()):
             raise ModelError("inference gave numbers that are no probabilities")
-        return Judged(tuple(SegmentScores(float(a), float(b), float(c)) for a, b, c in p), maps, distances)
+        return Judged(tuple(SegmentScores(float(a), float(b), float(c)) for a, b, c in p), maps, looks)
 
 
 class RingNetwork:
@@ -141,7 +148,7 @@ def _card(path: Path, network: Network) -> ModelCard:
     if missing:
         raise ModelError(f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; make one with weldgate-models train")
     _check_input(path, session, "crops", [1, SEGMENT_PX, SEGMENT_PX])
-    lacking = {"probabilities", "maps", "distances"} - {o.name for o in session.get_outputs()}
+    lacking = {"probabilities", "maps", "looks"} - {o.name for o in session.get_outputs()}
     if lacking:
         raise ModelError(f"{path}: has no output {', '.join(sorted(lacking))}; make one with weldgate-models train")
     try:

@@ -100,7 +100,8 @@ class Window(QMainWindow):
         self._facts["serial"].setText(record.serial or "–")
         self._facts["trigger"].setText(str(record.trigger_id))
         self._facts["inspection"].setText(f"{record.grabbed_at:%H:%M:%S} UTC")
-        self._facts["picture"].setText("UNLIKE TRAINING" if event.novel else "known")
+        drifting = event.drift is not None and event.drift.alarm
+        self._facts["picture"].setText("UNLIKE TRAINING" if event.novel else "DRIFTING" if drifting else "known")
         self._facts["cycle"].setText(f"{sum(ms for ms in steps if ms is not None):.0f} ms")
         self._live.show_part(event)
         self._strip.show_part(event)

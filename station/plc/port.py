@@ -43,6 +43,8 @@ class Health:
     failure: bool
     """NE 107: failure."""
     config_crc: int
+    out_of_spec: bool = False
+    """NE 107: out of specification; the pictures drift, the parts are judged."""
 
 
 class Line(Protocol):

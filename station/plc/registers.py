@@ -58,6 +58,7 @@ class Flags(IntFlag):
 
     SIMULATED = 1
     NOVEL = 2
+    DRIFT = 4
 
 
 class VerdictCode(IntEnum):
@@ -148,7 +149,13 @@ MAP: tuple[Register, ...] = (
     Register(170, "TEST_F32", "f32", "always 123.456"),
     Register(172, "MAP_VERSION", "u16", "version of this map"),
     Register(173, "SW_VERSION", "u16", "major * 256 + minor"),
-    Register(174, "FLAGS", "u16", "bit 0 SIMULATED: picture of an emulated camera; bit 1 NOVEL: it is unlike all training images"),
+    Register(
+        174,
+        "FLAGS",
+        "u16",
+        "bit 0 SIMULATED: picture of an emulated camera; bit 1 NOVEL: it is unlike all training images; bit 2 DRIFT: the last "
+        "pictures differ from the line's reference",
+    ),
     Register(175, "SEQ_TAIL", "u16", "equals SEQ_HEAD when the record is complete"),
 )
 BY_NAME = {register.name: register for register in MAP}

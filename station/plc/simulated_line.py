@@ -42,6 +42,7 @@ class Answer:
     reason: int
     handshake_complete: bool
     """Trigger acknowledged, result read and acknowledged, and RESULT_VALID seen to fall."""
+    flags: Flags
 
 
 def refusal(
@@ -113,7 +114,7 @@ class SimulatedLine:
     async def inspect(self, serial: str, window_s: float = 4.0) -> Answer:
         """One part: trigger, wait for the result inside the window, apply the rule, acknowledge."""
         if not await self.wait_ready(window_s):
-            return Answer(False, VerdictCode.NONE, "station not READY", None, 0, 0, False)
+            return Answer(False, VerdictCode.NONE, "station not READY", None, 0, 0, False, Flags(0))
         if self._crc is None:
             self._crc = number(await self._read(), "CONFIG_CRC")
         self._trigger_id = self._trigger_id % 0xFFFF + 1
@@ -125,7 +126,7 @@ class SimulatedLine:
         await self._set(self._control & ~Control.TRIGGER)
         values = await self._wait(Status.RESULT_VALID, True, window_s) if acked is not None else None
         if values is None:
-            return Answer(False, VerdictCode.NONE, "no result inside the window", None, 0, 0, False)
+            return Answer(False, VerdictCode.NONE, "no result inside the window", None, 0, 0, False, Flags(0))
         took_ms = (time.monotonic() - start) * 1000
         fresh = time.monotonic() - self._seen_s < 0.5
         refused = refusal(values, self._trigger_id, serial, fresh, self._crc, self._accept_simulated)
@@ -140,6 +141,7 @@ class SimulatedLine:
             number(values, "INSPECTION_ID"),
             number(values, "REASON"),
             gone is not None,
+            Flags(number(values, "FLAGS")),
         )
 
     async def _set(self, control: Control) -> None:

@@ -24,6 +24,7 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         (Status.MISSED_TRIGGER, s.missed),
         (Status.CMD_DONE, s.cmd_done),
         (Status.MAINTENANCE, s.stuck),
+        (Status.OUT_OF_SPEC, health.out_of_spec),
         (Status.FAILURE, health.failure),
     ):
         if on:

@@ -13,11 +13,15 @@ from models.errors import LearningError
 from models.evaluate import evaluate_lot
 from models.export import read_network
 from models.first_day import first_day
+from models.labelled import read_lot
+from models.reference import MIN_PARTS
 from models.report import lines, summary, write_report
 from models.train import fine_tune
-from station.classify.onnx import Classifier, RingNetwork
+from station.classify.drift import Reference, read_reference
+from station.classify.onnx import LOOK, Classifier, RingNetwork
 from station.inspection import Inspector
 from station.settings import ModelSettings, QualitySettings, WeldSettings
+from station.vision.unwrap import segments
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import FRAMES, label_with, labels
 
@@ -59,7 +63,7 @@ def test_an_unreadable_frame_is_named_before_any_is_judged(lot: Path, inspector:
 
 
 def test_drifts_begin_with_the_lot_as_it_is(lot: Path, inspector: Inspector, tmp_path: Path) -> None:
-    steps = drift(lot, inspector.classifier)
+    steps = drift(lot, inspector.classifier, None)
     assert len(steps) == len(DRIFTS) * len(STRENGTHS)
     untouched = [s for s in steps if s.strength == 0]
     assert len({(s.segments, s.alarms) for s in untouched}) == 1
@@ -67,6 +71,37 @@ def test_drifts_begin_with_the_lot_as_it_is(lot: Path, inspector: Inspector, tmp
     write_drift(steps, tmp_path / "drift")
     assert len(json.loads((tmp_path / "drift" / "drift.json").read_text())) == len(steps)
     assert cv2.imread(str(tmp_path / "drift" / "drift.png")) is not None
+
+
+def test_the_drift_of_one_part_from_its_own_look_is_told(lot: Path, inspector: Inspector) -> None:
+    strip = read_lot(lot)[0].strip
+    look = inspector.classifier(segments(strip)).looks.mean(axis=0, dtype=np.float64)
+    file_hash = inspector.card.file_hash
+    entries = json.loads((lot / "labels.json").read_text())["frames"]
+    (lot / "labels.json").unlink()
+    (lot / "labels.json").write_text(json.dumps({"frames": entries[:1]}))
+    reference = Reference(file_hash, 20, tuple(look.tolist()), (0.1,) * LOOK, 0.5)
+    steps = drift(lot, inspector.classifier, reference)
+    assert all(s.alarms == 0 for s in steps if s.strength == 0)
+    assert all(s.alarms == 1 for s in steps if s.strength == 1)
+
+
+def test_the_first_day_writes_a_reference_of_good_parts_only(
+    inspector: Inspector, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    image = cv2.imread(str(FRAMES / label_with("OK")["frame"]), cv2.IMREAD_GRAYSCALE)
+    for i in range(MIN_PARTS):
+        cv2.imwrite(str(tmp_path / f"{i:02d}.png"), np.clip(image * (0.9 + 0.01 * i), 0, 255).astype(np.uint8))
+    assert main(["first-day", str(tmp_path), "--reference", str(tmp_path / "line.json")]) == 0
+    assert f"reference: {tmp_path / 'line.json'}" in capsys.readouterr().out
+    reference = read_reference(tmp_path / "line.json", inspector.card.file_hash, LOOK)
+    assert reference.parts == MIN_PARTS
+    settings = ModelSettings(reference_path=tmp_path / "line.json")
+    watched = Inspector(RingNetwork(RING_MODEL), inspector.classifier, WeldSettings(), QualitySettings(), settings)
+    assert watched.reference == reference
+    (tmp_path / "bad.png").symlink_to(FRAMES / label_with("hole")["frame"])
+    assert main(["first-day", str(tmp_path), "--reference", str(tmp_path / "second.json")]) == 1
+    assert not (tmp_path / "second.json").exists()
 
 
 def test_the_first_day_takes_ok_parts_and_names_others(inspector: Inspector) -> None:

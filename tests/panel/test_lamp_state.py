@@ -15,7 +15,7 @@ UP = StatusEvent(True, "", True, True, Offline.NONE, Origin.CAMERA, Counts(1, 0,
 
 
 def part(inspection: Inspection, origin: Origin = Origin.CAMERA) -> PartEvent:
-    return PartEvent(record(inspection, origin=origin), (False,) * 21, False, True, 1.0, 1.0)
+    return PartEvent(record(inspection, origin=origin), (False,) * 21, False, None, True, 1.0, 1.0)
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
     item = label_with("hole")
     judged = nok_inspection()
     ring = Ring(item["center"][0], item["center"][1], item["radius"], 1.0)
-    event = PartEvent(record(judged, 12), tuple(i == 3 for i in range(21)), True, True, 90.0, 1.0)
+    event = PartEvent(record(judged, 12), tuple(i == 3 for i in range(21)), True, None, True, 90.0, 1.0)
     preview = make_preview(12, frames[item["frame"]], ring)
 
     def told() -> None:

@@ -1,6 +1,7 @@
 """Camera to verdict to PLC, every part the production one: emulated camera, engine, Modbus, simulated line."""
 
 import asyncio
+import hashlib
 import os
 import threading
 from collections.abc import Callable, Iterator
@@ -11,12 +12,14 @@ import pytest
 
 from deploy.demo import free_ports
 from station.archive import Archive, read_records
+from station.classify.drift import Reference, write_reference
+from station.classify.onnx import LOOK
 from station.cycle import Cycle, Listener
 from station.domain import Image, Reason, Verdict
 from station.errors import RecordError
 from station.events import Event, PartEvent
 from station.plc.modbus import ModbusServerLine
-from station.plc.registers import REASON_CODES, VerdictCode
+from station.plc.registers import REASON_CODES, Flags, VerdictCode
 from station.plc.simulated_line import Answer, SimulatedLine
 from station.settings import PylonSettings, Settings
 from station.startup import load_inspector, make_camera
@@ -58,11 +61,17 @@ class Station:
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
+    """A parameter: limit of drift from a reference that nothing looks like."""
+    reference = None
+    if hasattr(request, "param"):
+        reference = tmp_path / "line.json"
+        model_hash = hashlib.sha256(MODEL.read_bytes()).hexdigest()
+        write_reference(reference, Reference(model_hash, 20, (9.0,) * LOOK, (1.0,) * LOOK, request.param))
     return Settings.model_validate(
         {
             "camera": {"kind": "pylon", "device_class": "BaslerCamEmu", "serial": "0815-0000", "reconnect_s": 0.1},
-            "model": {"path": MODEL, "ring_path": RING_MODEL},
+            "model": {"path": MODEL, "ring_path": RING_MODEL, "reference_path": reference},
             "archive": {"folder": tmp_path / "records", "min_free_mb": 1},
             "plc": {"port": free_ports(1)[0], "deadline_ms": 5000},
         }
@@ -112,6 +121,18 @@ def test_a_plc_that_takes_no_simulated_pictures_passes_nothing(station: Station,
     assert answer.verdict is VerdictCode.OK
     assert not answer.accepted
     assert answer.refused_by == "picture of an emulated camera"
+
+
+@pytest.mark.parametrize(("settings", "parts_until_alarm"), [(15.0, 3), (1e6, None)], indirect=["settings"])
+def test_drifting_pictures_are_told_to_plc_and_window_and_still_judged(
+    station: Station, parts_until_alarm: int | None, frames: dict[str, Image]
+) -> None:
+    answers = station.run([frames[label_with("OK")["frame"]]] * 3)
+    assert [a.verdict for a in answers] == [VerdictCode.OK] * 3
+    drifts = [e.drift for e in station.part_events()]
+    alarms = [d is not None and d.alarm for d in drifts]
+    assert alarms == [i + 1 == parts_until_alarm for i in range(3)], drifts
+    assert [Flags.DRIFT in a.flags for a in answers] == alarms
 
 
 def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(station: Station, frames: dict[str, Image]) -> None:
