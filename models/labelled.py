@@ -24,6 +24,8 @@ from station.vision.unwrap import unwrap
 
 MIN_OVERLAP = 0.2
 """A crop is NOK if a defect covers this share of the smaller of crop and defect; below, but not 0, it is ignored."""
+TOUCH_DEG = 1e-6
+"""Less is rounding, not overlap."""
 WINDOW_STEP_PX = 10
 SHARES = (0.70, 0.15, 0.15)
 KINDS = {"hole_small": HOLE, "hole_long": HOLE, "hole": HOLE, "missing_weld": MISSING}
@@ -69,7 +71,7 @@ def crop_label(defects: tuple[Defect, ...], start_deg: float, end_deg: float) ->
             overlap = sum(max(0.0, min(defect.end_deg + k, end_deg) - max(defect.start_deg + k, start_deg)) for k in turns)
         if overlap / max(min(width, length), 1e-9) >= MIN_OVERLAP:
             label = max(label, defect.label)
-        elif overlap > 0:
+        elif overlap > TOUCH_DEG:
             touched = True
     return IGNORED if label == OK and touched else label
 

@@ -16,6 +16,8 @@ VAL_EVERY = 7
 """Every seventh shard is for validation: no part has crops on both sides."""
 MIN_OVERLAP = 0.2
 """A crop shows a defect if it covers this share of the smaller of the two; a crop that is touched by less is not used."""
+TOUCH_DEG = 1e-6
+"""Less is rounding, not overlap."""
 SEAM_SHARE = 0.2
 """Share of the flat crops in which the weld starts and ends; of a ring's it is one in 21, too few to learn its crater."""
 SEAM_DEG = 7.0
@@ -142,6 +144,6 @@ def crop_kind(part: Part, start_deg: float, end_deg: float) -> str | None:
         overlap = width if length >= 360 else float(np.clip((width + length) / 2 - away, 0, min(width, length)))
         if overlap >= MIN_OVERLAP * min(width, length):
             kind = name if kind != MISSING else kind
-        elif overlap > 0:
+        elif overlap > TOUCH_DEG:
             touched = True
     return None if kind == OK and touched else kind
