@@ -16,14 +16,15 @@ from rich.table import Table
 
 from deploy.demo import SERIAL, free_ports, shipped_parts
 from station.archive import Archive
-from station.cycle import Cycle, Listener
+from station.cycle import Listener
 from station.errors import WeldgateError
 from station.events import Event, PartEvent
 from station.imagefile import read_image
-from station.plc.modbus import ModbusServerLine
-from station.plc.simulated_line import Answer, SimulatedLine
+from station.plc.line import make_line
+from station.plc.simulated.line import Answer, SimulatedLine
+from station.recipe import prepare
 from station.settings import Settings
-from station.startup import load_inspector, make_camera
+from station.startup import make_cycle
 from synth.feed import Feed
 
 SHIPPED = Path(__file__).resolve().parent.parent / "models" / "shipped"
@@ -59,11 +60,10 @@ def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
         }
     )
     events: list[Event] = []
-    inspector, provenance = load_inspector(settings)
-    archive, line = Archive(settings.archive), ModbusServerLine(settings.plc)
+    loaded = prepare(settings, 1)
+    archive, line = Archive(settings.archive), make_line(settings.plc)
     line.start()
-    camera = make_camera(settings)
-    cycle = Cycle(camera, settings.camera.origin, line, inspector, archive, provenance, Listener(events.append, lambda _: None), 1.0)
+    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None))
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
@@ -79,7 +79,7 @@ def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
 
 async def _drive(port: int, feed: Feed, count: int) -> list[Answer]:
     images = [read_image(part.path) for part in shipped_parts()]
-    line = SimulatedLine("127.0.0.1", port, accept_simulated=True)
+    line = SimulatedLine.at("127.0.0.1", port, accept_simulated=True)
     answers = []
     try:
         feed.show(images[0])
@@ -88,7 +88,7 @@ async def _drive(port: int, feed: Feed, count: int) -> list[Answer]:
             feed.show(images[index % len(images)])
             answers.append(await line.inspect(f"B{index}"))
     finally:
-        line.close()
+        await line.close()
     return answers
 
 

@@ -24,7 +24,7 @@ from rich.console import Console
 
 from deploy.summary import DemoPart, Judged, count, summarise, tell, write_json
 from station.errors import LineError, WeldgateError
-from station.plc.simulated_line import SimulatedLine
+from station.plc.simulated.line import SimulatedLine
 from synth.errors import SynthError
 from synth.feed import Feed
 
@@ -191,7 +191,7 @@ async def _drive(
     pace_s: float,
     console: Console,
 ) -> list[Judged]:
-    line = SimulatedLine("127.0.0.1", port, accept_simulated=True)
+    line = SimulatedLine.at("127.0.0.1", port, accept_simulated=True)
     judged: list[Judged] = []
     try:
         up = False
@@ -210,7 +210,7 @@ async def _drive(
             await line.meanwhile(asyncio.sleep(pace_s))
     finally:
         stopping.set()
-        line.close()
+        await line.close()
     return judged
 
 

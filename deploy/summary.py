@@ -11,7 +11,7 @@ from rich.table import Table
 
 from station.domain import Verdict
 from station.plc.registers import REASON_CODES, VerdictCode
-from station.plc.simulated_line import Answer
+from station.plc.simulated.line import Answer
 
 REASONS = {code: str(reason) for reason, code in REASON_CODES.items()}
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# System libraries that the packages need, through apt, only what is missing. Usage: system.sh
+# System libraries that the packages need, through apt, only what is missing. Usage: system.sh [test]
+# test: also the Modbus peers that the tests talk to, and the compiler that builds them.
 set -euo pipefail
 
 # library file -> Debian and Ubuntu package: Qt's xcb platform, OpenGL stubs, pylon, and LLVM for Mitsuba
@@ -31,6 +32,12 @@ for entry in "${needed[@]}"; do
 done
 python3 -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
 [ -e /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf ] || packages+=(fonts-dejavu-core)
+if [ "${1:-}" = test ]; then
+    command -v mbpoll >/dev/null || packages+=(mbpoll)
+    command -v gcc >/dev/null || packages+=(gcc libc6-dev)
+    [ -e /usr/include/modbus/modbus.h ] || packages+=(libmodbus-dev)
+    [ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] || packages+=(python3-dev)
+fi
 [ ${#packages[@]} -eq 0 ] && exit 0
 
 if ! command -v apt-get >/dev/null; then

@@ -55,13 +55,27 @@ def _parser() -> argparse.ArgumentParser:
     add("check", _check, "say what is wrong with settings, model, archive, camera and port, and what to do")
     records = add("records", _records, "list and verify the records of an archive", settings=False)
     records.add_argument("folder", type=Path, metavar="FOLDER")
+    records.add_argument("--bus", action="store_true", help="print the edges on the PLC bus, and what was against the rules")
     registers = add("registers", _registers, "print the register map", settings=False)
-    registers.add_argument("--format", choices=("md", "csv"), default="md")
+    registers.add_argument(
+        "--format",
+        choices=("md", "csv", "st", "scl", "symbols"),
+        default="md",
+        help="md, csv: the map; st: the block in IEC 61131-3; scl: for TIA Portal; symbols: for EcoStruxure (default: %(default)s)",
+    )
     line = add("line", _line, "run a simulated line PLC against a station", settings=False)
-    line.add_argument("--host", default="127.0.0.1")
-    line.add_argument("--port", type=int, choices=range(1, 65536), default=1502, metavar="PORT")
-    line.add_argument("--parts", type=int, default=24)
+    line.add_argument("--mode", choices=("server", "client"), default="server", help="of the station (default: %(default)s)")
+    line.add_argument("--host", default="127.0.0.1", help="server: of the station; client: our own (default: %(default)s)")
+    line.add_argument("--port", type=int, choices=range(1, 65536), default=1502, metavar="PORT", help="default: %(default)s")
+    line.add_argument("--parts", type=int, default=24, help="default: %(default)s")
+    line.add_argument("--pace", type=float, default=0.0, metavar="S", help="seconds between parts (default: as fast as it goes)")
     line.add_argument("--accept-simulated", action="store_true", help="take verdicts on pictures of an emulated camera")
+    line.add_argument("--knob", nargs="+", default=[], metavar="NAME", help="failures, rolled by the seed; a wrong name lists them")
+    line.add_argument("--seed", type=int, default=0, help="default: %(default)s")
+    certificates = add("certificates", _certificates, "make certificates for trials of Modbus/TCP Security", settings=False)
+    certificates.add_argument("folder", type=Path, metavar="DIR", help="where they go; keys are readable by the owner alone")
+    certificates.add_argument("--host", default="127.0.0.1", help="name or address of the server (default: %(default)s)")
+    certificates.add_argument("--days", type=int, default=90, help="how long they hold (default: %(default)s)")
     return parser
 
 
@@ -101,9 +115,9 @@ def _run(arguments: argparse.Namespace) -> int:
 def _replay(arguments: argparse.Namespace) -> int:
     from rich.progress import track
 
+    from station.recipe import load_inspector
     from station.replay import image_files, judge, write_csv, write_json
     from station.settings import for_images, load
-    from station.startup import load_inspector
 
     files = image_files(arguments.paths)
     settings = for_images(SHIPPED) if arguments.settings is None else load(arguments.settings)
@@ -140,7 +154,12 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _records(arguments: argparse.Namespace) -> int:
     from station.archive import read_records
+    from station.plc.buslog import read_bus
 
+    if arguments.bus:
+        for edge in read_bus(arguments.folder):
+            print(f"{edge.time}  {edge.by:7}  {edge.name:18} {edge.value!s:>6}  {edge.note}".rstrip())
+        return 0
     bad = 0
     for entry in read_records(arguments.folder):
         record = entry.record
@@ -155,31 +174,28 @@ def _records(arguments: argparse.Namespace) -> int:
 
 
 def _registers(arguments: argparse.Namespace) -> int:
+    from station.plc.block.dialects import scl, structured_text, symbols
     from station.plc.document import as_csv, as_markdown
 
-    print(as_markdown() if arguments.format == "md" else as_csv(), end="")
+    forms = {"md": as_markdown, "csv": as_csv, "st": structured_text, "scl": scl, "symbols": symbols}
+    print(forms[arguments.format](), end="")
     return 0
 
 
 def _line(arguments: argparse.Namespace) -> int:
-    from station.plc.simulated_line import SimulatedLine
+    from station.plc.simulated.run import LineRun, run_line
 
-    async def run() -> int:
-        line = SimulatedLine(arguments.host, arguments.port, arguments.accept_simulated)
-        await line.connect(timeout_s=5)
-        passed = 0
-        for number in range(arguments.parts):
-            answer = await line.inspect(f"LINE-{number:06d}")
-            passed += answer.accepted
-            took = "-" if answer.trigger_to_valid_ms is None else f"{answer.trigger_to_valid_ms:.0f} ms"
-            print(
-                f"{number + 1:4d}  {answer.verdict.name:5}  {'pass' if answer.accepted else 'reject'}  {took:>8}  {answer.refused_by or ''}"
-            )
-        line.close()
-        print(f"{arguments.parts} parts, {passed} passed")
-        return 0
+    a = arguments
+    asyncio.run(run_line(LineRun(a.mode, a.host, a.port, a.parts, a.pace, a.accept_simulated, tuple(a.knob), a.seed)))
+    return 0
 
-    return asyncio.run(run())
+
+def _certificates(arguments: argparse.Namespace) -> int:
+    from station.plc.certificates import make_certificates
+
+    for path in make_certificates(arguments.folder, arguments.host, arguments.days):
+        print(path)
+    return 0
 
 
 if __name__ == "__main__":

@@ -13,11 +13,11 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from station.domain import Frame, Inspection, Origin
+from station.domain import Frame, Inspection
 from station.errors import ImageError, RecordError
 from station.filelock import FolderLock
 from station.imagefile import encode_png
-from station.records import Provenance, Record, from_json, to_json
+from station.records import Part, Provenance, Record, from_json, to_json
 from station.settings import ArchiveSettings
 
 SCHEMA = """
@@ -86,11 +86,16 @@ class Archive:
         return Pending(frame, None if frame is None else self._encoder.submit(encode_png, frame.image))
 
     def commit(
-        self, pending: Pending, inspection: Inspection, serial: str, trigger_id: int, provenance: Provenance, origin: Origin, now: datetime
+        self,
+        pending: Pending,
+        inspection: Inspection,
+        part: Part,
+        provenance: Provenance,
+        now: datetime,
     ) -> Record:
         """Make the record durable and return it. Raises RecordError; then nothing is listed."""
         try:
-            return self._commit(pending, inspection, serial, trigger_id, provenance, origin, now)
+            return self._commit(pending, inspection, part, provenance, now)
         except (OSError, sqlite3.Error, ImageError, ValueError) as error:
             if self._index.in_transaction:
                 self._index.rollback()
@@ -105,7 +110,12 @@ class Archive:
             raise RecordError(f"{self._folder}: record {inspection_id} could not be marked: {error}") from None
 
     def _commit(
-        self, pending: Pending, inspection: Inspection, serial: str, trigger_id: int, provenance: Provenance, origin: Origin, now: datetime
+        self,
+        pending: Pending,
+        inspection: Inspection,
+        part: Part,
+        provenance: Provenance,
+        now: datetime,
     ) -> Record:
         row = self._index.execute("SELECT seq FROM sqlite_sequence WHERE name = 'records'").fetchone()
         inspection_id = 1 + (row[0] if row else 0)
@@ -120,15 +130,16 @@ class Archive:
             _write(self._folder / frame_file, png)
         record = Record(
             inspection_id=inspection_id,
-            serial=serial,
-            trigger_id=trigger_id,
+            serial=part.serial,
+            trigger_id=part.trigger_id,
             grabbed_at=now if pending.frame is None else pending.frame.grabbed_at,
             source="" if pending.frame is None else pending.frame.source,
-            origin=origin,
+            origin=part.origin,
             frame_file=frame_file,
             frame_sha256=sha256,
             inspection=inspection,
             provenance=provenance,
+            golden=part.golden,
         )
         text = to_json(record)
         record_file = f"{day.name}/{inspection_id:08d}.json"
@@ -140,10 +151,10 @@ class Archive:
                 "INSERT INTO records VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)",
                 (
                     inspection_id,
-                    serial,
-                    trigger_id,
+                    part.serial,
+                    part.trigger_id,
                     record.grabbed_at.isoformat(),
-                    origin,
+                    part.origin,
                     inspection.verdict,
                     inspection.reason,
                     worst,

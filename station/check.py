@@ -7,8 +7,10 @@ from pathlib import Path
 
 from station.archive import Archive
 from station.errors import WeldgateError
+from station.plc.line import make_line
+from station.recipe import prepare
 from station.settings import Settings, load
-from station.startup import load_inspector, make_camera
+from station.startup import make_camera
 
 
 def check(path: Path) -> Iterator[tuple[str, str | None]]:
@@ -19,7 +21,7 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
         yield "settings", str(error)
         return
     yield "settings", None
-    for name, look in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC port", _port)):
+    for name, look in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC", _plc)):
         try:
             look(settings)
         except WeldgateError as error:
@@ -29,7 +31,8 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
 
 
 def _model(settings: Settings) -> None:
-    load_inspector(settings)
+    for number in sorted({1, *settings.recipes}):
+        prepare(settings, number)
 
 
 def _archive(settings: Settings) -> None:
@@ -51,7 +54,22 @@ def _camera(settings: Settings) -> None:
         camera.close()
 
 
-def _port(settings: Settings) -> None:
+def _plc(settings: Settings) -> None:
+    make_line(settings.plc)  # certificates
+    if settings.plc.mode == "client":
+        _reached(settings.plc.host, settings.plc.port)
+    else:
+        _free(settings)
+
+
+def _reached(host: str, port: int) -> None:
+    try:
+        socket.create_connection((host, port), timeout=2).close()
+    except OSError as error:
+        raise WeldgateError(f"PLC {host}:{port} cannot be reached ({error}); check address, cable and firewall, or set plc.host") from None
+
+
+def _free(settings: Settings) -> None:
     with closing(socket.socket()) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

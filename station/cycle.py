@@ -10,27 +10,24 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
-import numpy as np
-
+from station.answer import answer
 from station.archive import Archive, Pending
 from station.camera.port import Camera
-from station.classify.drift import Drift, DriftWatch
 from station.domain import Frame, Inspection, Origin, Reason, Timing, Verdict
-from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError
+from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError, WeldgateError
 from station.events import Counts, Event, PartEvent, Preview, StatusEvent
-from station.inspection import Inspector
-from station.plc.handshake import ALL_SEGMENTS
-from station.plc.port import Health, Line, Result, Trigger
-from station.plc.registers import REASON_CODES, Flags, Offline, Status, VerdictCode
+from station.plc.port import Command, Health, Line, Trigger
+from station.plc.registers import Offline, Status
 from station.preview import make_preview
-from station.records import Provenance, Record
+from station.recipe import Loaded
+from station.records import Part, Record
+from station.watch import Watch
 
 log = logging.getLogger("weldgate.cycle")
 
 IDLE_S = 0.1
 STATUS_S = 0.25
 ALIVE_S = 1.0
-ERROR_NOT_JUDGED = 0x1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,18 +46,21 @@ class Cycle:
         camera: Camera,
         origin: Origin,
         line: Line,
-        inspector: Inspector,
         archive: Archive,
-        provenance: Provenance,
+        loaded: Loaded,
+        prepare: Callable[[int], Loaded],
+        watch: Watch,
         listener: Listener,
         reconnect_s: float,
     ) -> None:
+        """`prepare` loads a recipe. Raises WeldgateError."""
         self._camera = camera
         self._origin = origin
         self._line = line
-        self._inspector = inspector
         self._archive = archive
-        self._provenance = provenance
+        self._loaded = loaded
+        self._prepare = prepare
+        self._watch = watch
         self._listener = listener
         self._reconnect_s = reconnect_s
         self._camera_there = False
@@ -69,8 +69,6 @@ class Cycle:
         self._alive_s = 0.0
         self._status_s = 0.0
         self._counts = Counts()
-        self._watch = None if inspector.reference is None else DriftWatch(inspector.reference)
-        self._drift: Drift | None = None
 
     def run(self, stop: threading.Event) -> None:
         """Serve triggers until `stop`; closes the camera at the end."""
@@ -79,11 +77,28 @@ class Cycle:
                 self._look_after_camera()
                 self._line.checked_in(self._health())
                 self._tell_status()
-                trigger = self._line.next_trigger(IDLE_S)
-                if trigger is not None:
-                    self._guarded(trigger)
+                request = self._line.next_request(IDLE_S)
+                if isinstance(request, Trigger):
+                    self._guarded(request)
+                elif isinstance(request, Command):
+                    self._line.command_done(request, self._load_recipe(request.arg))
+                else:
+                    self._watch.idle()
         finally:
             self._camera.close()
+
+    def _load_recipe(self, number: int) -> bool:
+        """Whether the recipe is in use now; if not, the one before still is."""
+        try:
+            loaded = self._prepare(number)
+        except WeldgateError as error:
+            log.error("recipe %d was not loaded: %s", number, error)
+            return False
+        self._loaded = loaded
+        self._watch.use(loaded)
+        self._line.checked_in(self._health())
+        log.info("recipe %d in use, configuration %d", number, loaded.provenance.config_crc)
+        return True
 
     def _look_after_camera(self) -> None:
         now = time.monotonic()
@@ -113,8 +128,18 @@ class Cycle:
             offline = Offline.CAMERA_LOST
         elif not room:
             offline = Offline.ARCHIVE_FULL
-        drifting = self._drift is not None and self._drift.alarm
-        return Health(offline is Offline.NONE, offline, offline is not Offline.NONE, self._provenance.config_crc, drifting)
+        elif self._watch.self_test_failed:
+            offline = Offline.SELF_TEST_FAILED
+        failed = offline is not Offline.NONE
+        return Health(
+            ready=not failed,
+            offline=offline,
+            failure=failed,
+            config_crc=self._loaded.provenance.config_crc,
+            out_of_spec=self._watch.drifting,
+            function_check=self._watch.master_wrong,
+            recipe=self._loaded.provenance.recipe,
+        )
 
     def _tell_status(self) -> None:
         now = time.monotonic()
@@ -149,39 +174,34 @@ class Cycle:
         pending = self._archive.begin(frame)
         if frame is not None:
             inspection = self._judge(frame, inspection.timing)
-            self._see_drift(inspection)
+            self._watch.part(inspection)
         start = time.perf_counter()
         record = self._record(trigger, pending, inspection)
         record_ms = (time.perf_counter() - start) * 1000
+        inspector, inspection = self._loaded.inspector, record.inspection
+        nok, novel = tuple(inspector.is_nok(s) for s in inspection.scores), inspector.is_novel(inspection)
         start = time.perf_counter()
-        shown = self._line.publish(self._result(trigger, record))
+        shown = self._line.publish(answer(trigger, record, nok, novel, self._watch.drifting))
         publish_ms = (time.perf_counter() - start) * 1000
-        self._count(record.verdict if shown else Verdict.ERROR)
+        if trigger.golden:
+            self._watch.master(record.serial, record.verdict)
+        else:
+            self._count(record.verdict if shown else Verdict.ERROR)
         if not shown:
             log.warning(
                 "part %d, %s: came too late, the PLC was not shown its verdict %s", record.inspection_id, record.serial, record.verdict
             )
         self._mark(record, shown)
-        novel = self._inspector.is_novel(record.inspection)
         if novel:
             log.warning(
                 "part %d, %s: unlike the training images (distance %.2f); check light, focus and surface",
                 record.inspection_id,
                 record.serial,
-                record.inspection.novelty,
+                inspection.novelty,
             )
-        self._listener.event(PartEvent(record, self._seg_nok(record.inspection), novel, self._drift, shown, record_ms, publish_ms))
+        self._listener.event(PartEvent(record, nok, novel, self._watch.drift, shown, record_ms, publish_ms))
         if frame is not None:
-            self._listener.preview(make_preview(record.inspection_id, frame.image, record.inspection.ring))
-
-    def _see_drift(self, inspection: Inspection) -> None:
-        if self._watch is None or not inspection.look:
-            return
-        before, self._drift = self._drift, self._watch.part(np.array(inspection.look))
-        if self._drift.alarm and not (before is not None and before.alarm):
-            log.warning("the pictures drift (%.2f, limit %.2f); check light, focus and surface", self._drift.value, self._drift.limit)
-        elif before is not None and before.alarm and not self._drift.alarm:
-            log.info("the pictures are as they were (%.2f)", self._drift.value)
+            self._listener.preview(make_preview(record.inspection_id, frame.image, inspection.ring))
 
     def _mark(self, record: Record, shown: bool) -> None:
         try:
@@ -199,13 +219,14 @@ class Cycle:
 
     def _record(self, trigger: Trigger, pending: Pending, inspection: Inspection) -> Record:
         """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
-        now = datetime.now(UTC)
+        now, provenance = datetime.now(UTC), self._loaded.provenance
+        part = Part(trigger.serial, trigger.trigger_id, self._origin, trigger.golden)
         try:
-            return self._archive.commit(pending, inspection, trigger.serial, trigger.trigger_id, self._provenance, self._origin, now)
+            return self._archive.commit(pending, inspection, part, provenance, now)
         except RecordError as error:
             log.error("%s", error)
         failed = Inspection.error(Reason.RECORD_FAILED, inspection.ring, inspection.quality, inspection.timing)
-        return Record(0, trigger.serial, trigger.trigger_id, now, "", self._origin, None, None, failed, self._provenance)
+        return Record(0, part.serial, part.trigger_id, now, "", part.origin, None, None, failed, provenance, part.golden)
 
     def _grab(self) -> tuple[Frame | None, Inspection]:
         """A frame, or why there is none."""
@@ -229,44 +250,11 @@ class Cycle:
 
     def _judge(self, frame: Frame, timing: Timing) -> Inspection:
         try:
-            return self._inspector.inspect(frame.image, timing.grab_ms)
+            return self._loaded.inspector.inspect(frame.image, timing.grab_ms)
         except Exception:  # the gate must answer: any fault is "not judged"
             log.exception("inspection failed")
             return Inspection.error(Reason.INTERNAL, timing=timing)
 
-    def _seg_nok(self, inspection: Inspection) -> tuple[bool, ...]:
-        return tuple(self._inspector.is_nok(s) for s in inspection.scores)
-
-    def _result(self, trigger: Trigger, record: Record) -> Result:
-        inspection = record.inspection
-        nok, novel = self._seg_nok(inspection), self._inspector.is_novel(inspection)
-        reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]
-        flags = Flags.SIMULATED if self._origin is Origin.SIMULATED else Flags(0)
-        if novel:
-            flags |= Flags.NOVEL
-        if self._drift is not None and self._drift.alarm:
-            flags |= Flags.DRIFT
-        return Result(
-            trigger=trigger,
-            verdict=verdict_code(inspection.verdict, self._origin),
-            inspection_id=record.inspection_id,
-            reason=reason,
-            error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
-            seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
-            seg_nok_mask=sum(1 << i for i, bad in enumerate(nok) if bad),
-            seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
-            flags=flags,
-        )
-
     def _count(self, verdict: Verdict) -> None:
         name = {Verdict.OK: "ok", Verdict.NOK: "nok", Verdict.ERROR: "error"}[verdict]
         self._counts = replace(self._counts, **{name: getattr(self._counts, name) + 1})
-
-
-def verdict_code(verdict: Verdict, origin: Origin) -> VerdictCode:
-    """What the PLC reads: a replayed part never releases anything."""
-    if verdict is Verdict.ERROR:
-        return VerdictCode.ERROR
-    if origin is Origin.REPLAY:
-        return VerdictCode.TEST
-    return VerdictCode.OK if verdict is Verdict.OK else VerdictCode.NOK

@@ -25,6 +25,17 @@ class Provenance:
     config_crc: int
     hole_threshold: float
     missing_threshold: float
+    recipe: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Which part, as the PLC named it, and where its picture comes from."""
+
+    serial: str
+    trigger_id: int
+    origin: Origin
+    golden: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +53,8 @@ class Record:
     frame_sha256: str | None
     inspection: Inspection
     provenance: Provenance
+    golden: bool = False
+    """A master, judged because the PLC asked for it: it never releases anything."""
     format: int = FORMAT
 
     @property

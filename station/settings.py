@@ -1,11 +1,11 @@
 """station.toml as checked values. Relative paths count from the file's folder."""
 
 import tomllib
-from ipaddress import IPv4Address, IPv6Address
+from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from station.domain import Origin
 from station.errors import SettingsError
@@ -77,20 +77,72 @@ class ModelSettings(Section):
     reference_path: Path | None = None
     """Look of the line's own good parts; without it drifting pictures are not watched for."""
     threads: int = Field(default=2, ge=1, le=64)
+    self_test_path: Path | None = None
+    """Frame that is judged at the start and again while idle: its scores must never change."""
+    self_test_s: float = Field(default=10.0, ge=0.5, le=3600)
+    """Idle time between two self-tests."""
     hole_threshold: Share | None = None
     missing_threshold: Share | None = None
 
 
-class PlcSettings(Section):
-    """Modbus TCP server that the PLC talks to, and the times of the handshake."""
+class TlsSettings(Section):
+    """Modbus/TCP Security: both sides show a certificate (`weldgate certificates` makes some for trials)."""
 
+    certificate_path: Path
+    key_path: Path
+    ca_path: Path
+    """Whose certificates are trusted."""
+
+
+class GoldenSettings(Section):
+    """Parts known to be good or bad, to be judged when the PLC asks for it."""
+
+    masters: dict[str, Literal["OK", "NOK"]] = {}
+    """Serial of each master and what the station must find."""
+
+
+class RecipeSettings(Section):
+    """What differs from the sections of the same name for one kind of part."""
+
+    weld: dict[str, Any] = {}
+    quality: dict[str, Any] = {}
+    model: dict[str, Any] = {}
+
+
+class PlcSettings(Section):
+    """The PLC: where, who may write, and the times of the handshake."""
+
+    mode: Literal["server", "client"] = "server"
+    """server: the PLC reaches into our registers; client: we reach into the PLC's."""
     host: str = "127.0.0.1"
+    """server: our address; client: the PLC's."""
     port: Port = 1502
+    unit: int = Field(default=1, ge=0, le=255)
+    command_base: int = Field(default=0, ge=0, le=65536 - 23)
+    status_base: int = Field(default=100, ge=0, le=65536 - 76)
+    """Addresses of the windows in the PLC (client)."""
+    poll_ms: int = Field(default=20, ge=5, le=1000)
+    timeout_ms: int = Field(default=400, ge=50, le=5000)
+    """Answer to one request (client)."""
+    low_word_first: bool = False
+    """Word order of 32-bit values; the test pattern shows which one is right."""
+    allow: tuple[IPv4Network | IPv6Network, ...] = ()
+    """Peers that may connect (server); empty: all."""
+    writer_idle_ms: int = Field(default=2_000, ge=100, le=600_000)
+    """A peer that has not written for so long loses the right to write to the next (server)."""
+    tls: TlsSettings | None = None
     deadline_ms: int = Field(default=2000, ge=100, le=60_000)
     result_ttl_ms: int = Field(default=10_000, ge=100, le=600_000)
     stuck_ms: int = Field(default=5_000, ge=100, le=600_000)
     plc_heartbeat_ms: int = Field(default=2_000, ge=0, le=60_000)
     """PLC_HEARTBEAT must change within this time; 0: not watched."""
+
+    @model_validator(mode="after")
+    def _windows_apart(self) -> "PlcSettings":
+        command, status = (range(base, base + words) for base, words in ((self.command_base, 23), (self.status_base, 76)))
+        if command.start < status.stop and status.start < command.stop:
+            raise ValueError(f"command_base {command.start} and status_base {status.start}: windows of 23 and 76 registers overlap")
+        return self
 
 
 class ArchiveSettings(Section):
@@ -98,6 +150,8 @@ class ArchiveSettings(Section):
 
     folder: Path = Path("records")
     min_free_mb: int = Field(default=500, ge=1)
+    bus_days: int = Field(default=30, ge=1, le=3650)
+    """How long the edges of the PLC bus are kept."""
 
 
 class ChannelSettings(Section):
@@ -118,12 +172,28 @@ class Settings(Section):
     plc: PlcSettings = PlcSettings()
     archive: ArchiveSettings = ArchiveSettings()
     channel: ChannelSettings = ChannelSettings()
+    golden: GoldenSettings = GoldenSettings()
+    recipes: dict[Annotated[int, Field(ge=1, le=65535)], RecipeSettings] = {}
+    """By number; recipe 1 is the sections as they are, unless it is named here."""
 
 
 def for_images(networks: Path) -> Settings:
     """Settings to judge recorded images by, without a file: the default limits, and the networks in a folder."""
     camera = ReplaySettings(kind="replay", folder=Path())
     return Settings(camera=camera, model=ModelSettings(path=networks / "weldgate.onnx", ring_path=networks / "ring.onnx"))
+
+
+def for_recipe(settings: Settings, number: int) -> Settings:
+    """The settings of one recipe. Raises SettingsError if there is none of that number, pydantic.ValidationError."""
+    changes = settings.recipes.get(number)
+    if changes is None:
+        if number == 1:
+            return settings
+        raise SettingsError(f"there is no recipe {number}; recipes: {', '.join(map(str, sorted({1, *settings.recipes})))}")
+    sections: dict[str, Section] = {}
+    for name, section in (("weld", settings.weld), ("quality", settings.quality), ("model", settings.model)):
+        sections[name] = type(section).model_validate({**section.model_dump(), **getattr(changes, name)})
+    return settings.model_copy(update=sections)
 
 
 def load(path: Path) -> Settings:
@@ -142,6 +212,8 @@ def load(path: Path) -> Settings:
         raise SettingsError(f"{path}: not valid TOML: {error}") from None
     try:
         settings = Settings.model_validate(raw)
+        for number in settings.recipes:
+            for_recipe(settings, number)
     except ValidationError as error:
         raise SettingsError(f"{path}: {_first(error)}") from None
     return _anchored(settings, path.resolve().parent)
@@ -152,13 +224,24 @@ def _first(error: ValidationError) -> str:
     return "; ".join(problems)
 
 
+def _under(folder: Path, values: dict[str, Any]) -> dict[str, Path]:
+    return {key: folder / value for key, value in values.items() if key.endswith("_path") or key == "path" if value is not None}
+
+
 def _anchored(settings: Settings, folder: Path) -> Settings:
     model = settings.model
-    files = {"path": model.path, "ring_path": model.ring_path, "reference_path": model.reference_path}
-    changes: dict[str, Section] = {
-        "model": model.model_copy(update={key: folder / path for key, path in files.items() if path is not None}),
+    changes: dict[str, Any] = {
+        "model": model.model_copy(update=_under(folder, dict(model))),
+        "recipes": {
+            number: recipe.model_copy(update={"model": {**recipe.model, **_under(folder, recipe.model)}})
+            for number, recipe in settings.recipes.items()
+        },
         "archive": settings.archive.model_copy(update={"folder": folder / settings.archive.folder}),
     }
+    tls = settings.plc.tls
+    if tls is not None:
+        anchored = tls.model_copy(update={key: folder / path for key, path in tls})
+        changes["plc"] = settings.plc.model_copy(update={"tls": anchored})
     if isinstance(settings.camera, ReplaySettings):
         changes["camera"] = settings.camera.model_copy(update={"folder": folder / settings.camera.folder})
     return settings.model_copy(update=changes)

@@ -3,23 +3,23 @@
 import logging
 import signal
 import threading
-import zlib
 from collections.abc import Callable
 from contextlib import ExitStack, closing
 from types import FrameType
 from typing import TypeVar
 
-from station import __version__
 from station.archive import Archive
 from station.camera.port import Camera
 from station.channel import Publisher
-from station.classify.onnx import Classifier, RingNetwork
 from station.cycle import Cycle, Listener
+from station.domain import Verdict
 from station.errors import WeldgateError
-from station.inspection import Inspector
-from station.plc.modbus import ModbusServerLine
-from station.records import Provenance
+from station.plc.buslog import BusLog
+from station.plc.line import make_line
+from station.plc.port import Line
+from station.recipe import Loaded, prepare
 from station.settings import PylonSettings, Settings
+from station.watch import Watch
 
 log = logging.getLogger("weldgate")
 
@@ -37,27 +37,20 @@ def make_camera(settings: Settings) -> Camera:
     return ReplayCamera(settings.camera)
 
 
-def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
-    """Inspector and what its verdicts come from. Raises ModelError."""
-    ring_network = RingNetwork(settings.model.ring_path, settings.model.threads)
-    classifier = Classifier(settings.model.path, settings.model.threads)
-    inspector = Inspector(ring_network, classifier, settings.weld, settings.quality, settings.model)
-    parts = (
-        settings.model_dump_json(include={"camera", "weld", "quality"}),
-        ring_network.file_hash,
-        classifier.card.file_hash,
-        str(inspector.thresholds),
+def make_cycle(settings: Settings, loaded: Loaded, line: Line, archive: Archive, listener: Listener) -> Cycle:
+    """The cycle that the settings describe; recipes are loaded by the same settings."""
+    masters = {serial: Verdict(found) for serial, found in settings.golden.masters.items()}
+    return Cycle(
+        camera=make_camera(settings),
+        origin=settings.camera.origin,
+        line=line,
+        archive=archive,
+        loaded=loaded,
+        prepare=lambda number: prepare(settings, number),
+        watch=Watch(loaded, masters, settings.model.self_test_s),
+        listener=listener,
+        reconnect_s=settings.camera.reconnect_s if isinstance(settings.camera, PylonSettings) else 1.0,
     )
-    provenance = Provenance(
-        software=__version__,
-        model_version=classifier.card.version,
-        model_hash=classifier.card.file_hash,
-        ring_model_hash=ring_network.file_hash,
-        config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
-        hole_threshold=inspector.thresholds.hole,
-        missing_threshold=inspector.thresholds.missing_weld,
-    )
-    return inspector, provenance
 
 
 def run_engine(settings: Settings) -> None:
@@ -80,24 +73,15 @@ def run_engine(settings: Settings) -> None:
                 problems.append(str(error))
                 return None
 
-        loaded = tried(lambda: load_inspector(settings))
+        loaded = tried(lambda: prepare(settings, 1))
         publisher = tried(lambda: stack.enter_context(closing(Publisher(settings.channel))))
         archive = tried(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
-        if problems or loaded is None or publisher is None or archive is None:
+        bus = tried(lambda: stack.enter_context(closing(BusLog(settings.archive.folder, settings.archive.bus_days)))) if archive else None
+        if problems or loaded is None or publisher is None or archive is None or bus is None:
             raise WeldgateError("; ".join(problems))
-        line = ModbusServerLine(settings.plc)
+        line = make_line(settings.plc, bus)
         stack.callback(line.stop)
         line.start()
-        inspector, provenance = loaded
-        log.info("station up: model %s, PLC on port %d", provenance.model_version, line.port)
-        cycle = Cycle(
-            camera=make_camera(settings),
-            origin=settings.camera.origin,
-            line=line,
-            inspector=inspector,
-            archive=archive,
-            provenance=provenance,
-            listener=Listener(publisher.send, publisher.show),
-            reconnect_s=settings.camera.reconnect_s if isinstance(settings.camera, PylonSettings) else 1.0,
-        )
+        log.info("station up: model %s, PLC %s on port %d", loaded.provenance.model_version, settings.plc.mode, line.port)
+        cycle = make_cycle(settings, loaded, line, archive, Listener(publisher.send, publisher.show))
         cycle.run(stop)

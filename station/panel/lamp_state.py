@@ -44,8 +44,8 @@ def _of_part(part: PartEvent, strength: float) -> Lamp:
     reason = "" if record.inspection.reason is None else str(record.inspection.reason)
     if record.verdict is Verdict.ERROR or not part.shown_to_plc:
         return Lamp("ERROR", "!", theme.WARN, strength, reason or "result came too late for the PLC")
-    if record.origin is Origin.REPLAY:
-        return Lamp("TEST", "T", theme.TEST, strength, f"replay, judged {record.verdict}")
+    if record.golden or record.origin is Origin.REPLAY:
+        return Lamp("TEST", "T", theme.TEST, strength, f"{'master' if record.golden else 'replay'}, judged {record.verdict}")
     if record.verdict is Verdict.OK:
         return Lamp("OK", "✓", theme.GOOD, strength, "21 of 21 segments")
     return Lamp("NOK", "✗", theme.BAD, strength, reason)

@@ -2,7 +2,7 @@
 
 from enum import IntFlag
 
-from station.plc.registers import MAP, REASON_CODES, Control, Flags, Offline, Status, VerdictCode
+from station.plc.registers import MAP, REASON_CODES, REFUSED, CommandCode, Control, Flags, Offline, Status, VerdictCode
 
 COLUMNS = ("register", "4xxxx", "bits", "name", "type", "words", "meaning")
 
@@ -37,10 +37,12 @@ def as_markdown() -> str:
     for title, bits in (("CONTROL", Control), ("STATUS", Status), ("FLAGS", Flags)):
         text += f"\n## Bits of {title}\n\n" + _table(("bit", "name"), _bits(bits))
     text += "\n## VERDICT\n\n" + _table(("value", "name"), [(str(int(v)), v.name) for v in VerdictCode])
+    text += "\n## COMMAND\n\n" + _table(("value", "name"), [(str(int(v)), v.name) for v in CommandCode])
+    text += f"\nCMD_ECHO is the command once CMD_DONE is 1, or {REFUSED} if it was refused.\n"
     text += "\n## OFFLINE_REASON\n\n" + _table(("value", "name"), [(str(int(v)), v.name) for v in Offline])
     text += "\n## REASON\n\n" + _table(("value", "meaning"), [(str(code), str(reason)) for reason, code in REASON_CODES.items()])
     text += "\nERROR_CODE is 16#1000 + REASON when a part could not be judged; 16#2101 deadline missed, 16#2102 aborted,\n"
-    text += "16#2103 TRIGGER_ID 0 or repeated, 16#2104 a PLC bit is stuck, 16#2105 golden check asked for but not built yet.\n"
+    text += "16#2103 TRIGGER_ID 0 or repeated, 16#2104 a PLC bit is stuck, 16#2105 the link was lost while the result was written.\n"
     return text
 
 

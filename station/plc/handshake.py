@@ -7,21 +7,22 @@
     SHOWN --RESULT_ACK edge, TTL, or next trigger--> IDLE (or WIPED)
     any --ENABLE = 0, SET_OFFLINE, PLC silent--> OFFLINE   result wiped
 
-A verdict is shown only for the trigger in work; a result of any other trigger is refused.
+A command that the station must carry out holds READY at 0 until it is done. A verdict is shown only for the trigger in work; a result
+of any other trigger is refused.
 """
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from station.domain import SEGMENTS, Reason
-from station.plc.port import Health, Result, Trigger
-from station.plc.registers import REASON_CODES, Control, Flags, Offline, VerdictCode
+from station.plc.port import Command, Health, Result, Trigger
+from station.plc.registers import REASON_CODES, REFUSED, CommandCode, Control, Flags, Offline, VerdictCode
 
 ERROR_DEADLINE = 0x2101
 ERROR_ABORTED = 0x2102
 ERROR_BAD_TRIGGER_ID = 0x2103
 ERROR_STUCK_BIT = 0x2104
-ERROR_NO_GOLDEN_CHECK = 0x2105
+ERROR_LINK_LOST = 0x2105
 ALL_CONTROL = Control(0xFF)
 ALL_SEGMENTS = (1 << SEGMENTS) - 1
 
@@ -47,6 +48,8 @@ class Times:
     """0: not watched."""
     alive_s: float = 3.0
     """The inspection must have checked in within this time."""
+    command_s: float = 30.0
+    """A command not carried out by then is refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +66,13 @@ class Inputs:
     exposure_done_for: int | None = None
     """Number of the trigger whose picture is taken."""
     result: Result | None = None
+    arg: int = 0
+    command_done: tuple[int, bool] | None = None
+    """Number of the command that was carried out, and whether well."""
+    link: bool = True
+    """The PLC can be reached."""
+    link_was_lost: bool = False
+    """The last record may not have reached the PLC whole."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +93,10 @@ class State:
     error_code: int = 0
     cmd_done: bool = False
     cmd_echo: int = 0
+    command: Command | None = None
+    """Being carried out."""
+    commands: int = 0
+    """Commands handed to the station so far."""
     result: Result | None = None
     shown_s: float = 0.0
     process_ms: int = 0
@@ -103,6 +117,7 @@ class Step:
 
     state: State
     start: Trigger | None = None
+    command: Command | None = None
     refused: bool = False
     """The offered result was not shown."""
     again: bool = False
@@ -116,24 +131,30 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
     s = _clocks(state, inputs, now_s, times)
     s = replace(s, control=inputs.control)
     s = _acknowledge(s, inputs, rising, now_s, times)
+    s, rising = _commanded(s, inputs, rising, now_s, times)
+    command = s.command if s.commands > state.commands else None
     offline = _offline(s, inputs, now_s, times)
     s = replace(s, offline=offline)
     start: Trigger | None = None
     refused = inputs.result is not None
 
-    if offline in (Offline.NOT_ENABLED, Offline.SET_OFFLINE, Offline.PLC_SILENT):
+    if offline in (Offline.NOT_ENABLED, Offline.SET_OFFLINE, Offline.PLC_SILENT, Offline.PREPARING):
         s = _wiped(replace(s, phase=Phase.OFFLINE, trigger=None, trigger_ack=False))
         if rising & Control.TRIGGER:
             s = replace(s, missed=True)
-        return Step(s, refused=refused)
+        return Step(s, command=command, refused=refused)
 
     if s.phase is Phase.WIPED and s.trigger is not None:
         start = s.trigger
         s = replace(s, phase=Phase.BUSY, trigger_ack=True)
     elif s.phase is Phase.BUSY and s.trigger is not None:
         s, refused = _busy(s, s.trigger, inputs, rising, now_s, times)
-    elif s.phase is Phase.SHOWN and now_s - s.shown_s > times.result_ttl_s:
-        s = _wiped(replace(s, phase=Phase.IDLE))
+    elif s.phase is Phase.SHOWN and (shown := s.result) is not None:
+        if now_s - s.shown_s > times.result_ttl_s:
+            s = _wiped(replace(s, phase=Phase.IDLE))
+        elif inputs.link_was_lost and now_s - shown.trigger.accepted_s > times.deadline_s:
+            trigger = shown.trigger
+            s = _shown(s, _error_result(trigger, REASON_CODES[Reason.DEADLINE], ERROR_LINK_LOST), trigger, now_s)
 
     if s.phase is Phase.OFFLINE and offline is Offline.NONE:
         s = replace(s, phase=Phase.IDLE)
@@ -141,7 +162,7 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
         s = replace(s, phase=Phase.OFFLINE)
     if start is None and rising & Control.TRIGGER:
         s = _triggered(s, inputs, now_s, was_ready)
-    return Step(s, start, refused, again=s.phase is Phase.WIPED)
+    return Step(s, start, command, refused, again=s.phase is Phase.WIPED)
 
 
 def ready(s: State) -> bool:
@@ -153,7 +174,7 @@ def ready(s: State) -> bool:
 def _clocks(s: State, inputs: Inputs, now_s: float, times: Times) -> State:
     if inputs.plc_heartbeat != s.plc_heartbeat:
         s = replace(s, plc_heartbeat=inputs.plc_heartbeat, plc_seen_s=now_s)
-    if inputs.health_age_s <= times.alive_s and now_s - s.heartbeat_s >= 0.1:
+    if inputs.health_age_s <= times.alive_s and inputs.health.ready and now_s - s.heartbeat_s >= 0.1:
         s = replace(s, heartbeat=(s.heartbeat + 1) & 0xFFFF, heartbeat_s=now_s)
     if not (s.control & Control.TRIGGER) and inputs.control & Control.TRIGGER:
         s = replace(s, trigger_since_s=now_s)
@@ -175,17 +196,38 @@ def _acknowledge(s: State, inputs: Inputs, rising: Control, now_s: float, times:
         s = _wiped(replace(s, phase=Phase.IDLE))
     if rising & Control.CLEAR_ERROR:
         s = replace(s, error=False, missed=False, error_code=0)
-    if rising & Control.EXEC_COMMAND:
-        clears = inputs.command == 11
-        s = replace(s, cmd_done=True, cmd_echo=inputs.command if clears else 0xFFFF)
-        if clears:
-            s = replace(s, error=False, missed=False, error_code=0)
-    elif not inputs.control & Control.EXEC_COMMAND:
-        s = replace(s, cmd_done=False)
     return s
 
 
+def _commanded(s: State, inputs: Inputs, rising: Control, now_s: float, times: Times) -> tuple[State, Control]:
+    """The state with the command heard, and the edges with what it stands for."""
+    if s.command is not None:
+        done = inputs.command_done is not None and inputs.command_done[0] == s.command.number
+        if done or now_s - s.command.since_s > times.command_s:
+            well = done and inputs.command_done is not None and inputs.command_done[1]
+            s = replace(s, cmd_done=True, cmd_echo=s.command.code if well else REFUSED, command=None)
+    if not inputs.control & Control.EXEC_COMMAND:
+        return replace(s, cmd_done=False), rising
+    if not rising & Control.EXEC_COMMAND:
+        return s, rising
+    code = inputs.command
+    if code in (CommandCode.RESET, CommandCode.ACK_ERROR):
+        s = replace(s, error=False, missed=False, error_code=0)
+        if code == CommandCode.RESET and s.phase is Phase.SHOWN:
+            s = _wiped(replace(s, phase=Phase.IDLE))
+    elif code == CommandCode.ABORT:
+        rising |= Control.ABORT
+    elif code in list(CommandCode) and s.command is None and s.phase not in (Phase.WIPED, Phase.BUSY):
+        command = Command(CommandCode(code), inputs.arg, s.commands + 1, now_s)
+        return replace(s, cmd_done=False, command=command, commands=command.number), rising
+    else:
+        code = REFUSED
+    return replace(s, cmd_done=True, cmd_echo=code), rising
+
+
 def _offline(s: State, inputs: Inputs, now_s: float, times: Times) -> Offline:
+    if not inputs.link:
+        return Offline.PLC_SILENT
     if times.plc_heartbeat_s > 0 and now_s - s.plc_seen_s > times.plc_heartbeat_s:
         return Offline.PLC_SILENT
     if inputs.control & Control.SET_OFFLINE:
@@ -194,6 +236,8 @@ def _offline(s: State, inputs: Inputs, now_s: float, times: Times) -> Offline:
         return Offline.NOT_ENABLED
     if inputs.health_age_s > times.alive_s and s.phase is not Phase.BUSY:
         return Offline.STATION_STALLED
+    if s.command is not None:
+        return Offline.PREPARING
     return Offline.NONE if inputs.health.ready else inputs.health.offline
 
 
@@ -234,11 +278,9 @@ def _triggered(s: State, inputs: Inputs, now_s: float, was_ready: bool) -> State
     """READY must have been readable before the edge, and still hold."""
     if not (was_ready and ready(s)):
         return replace(s, missed=True)
-    if inputs.control & Control.GOLDEN_CHECK:
-        return replace(s, missed=True, error_code=s.error_code or ERROR_NO_GOLDEN_CHECK)
     if inputs.trigger_id in (0, s.last_id):
         return replace(s, missed=True, error_code=s.error_code or ERROR_BAD_TRIGGER_ID)
-    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s, s.accepted + 1)
+    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s, s.accepted + 1, bool(inputs.control & Control.GOLDEN_CHECK))
     s = replace(_wiped(s), accepted=trigger.number)
     return replace(s, phase=Phase.WIPED, trigger=trigger, last_id=inputs.trigger_id, exposure_done=False, missed=False)
 

@@ -1,267 +1,294 @@
-"""Modbus TCP, server for the station and client for a line; the only file that imports pymodbus.
+"""Modbus TCP, a server and a client; the only file that imports pymodbus.
 
-The server's memory is touched from its own loop alone, and a record is written in one call: no reader sees half of one.
+The server's memory is touched from its own loop alone, and a window is written in one call: no reader sees half of one.
 """
 
 import asyncio
+import contextvars
+import itertools
 import logging
-import queue
-import threading
+import ssl
 import time
-from collections.abc import Coroutine
-from concurrent.futures import Future
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from typing import Any, TypeVar
 
 from pymodbus.client import AsyncModbusTcpClient
 from pymodbus.constants import ExcCodes
 from pymodbus.exceptions import ModbusException
+from pymodbus.framer import FramerType
+from pymodbus.pdu import ModbusPDU
 from pymodbus.pdu.device import ModbusDeviceIdentification
-from pymodbus.server import ModbusTcpServer
+from pymodbus.server import ModbusTcpServer, ModbusTlsServer
+from pymodbus.server.requesthandler import ServerRequestHandler
 from pymodbus.simulator import DataType, SimData, SimDevice
+from pymodbus.transaction import TransactionManager
+from pymodbus.transport import CommParams, CommType
 
 from station import __version__
 from station.errors import LineError
-from station.plc import status_window
-from station.plc.handshake import Inputs, Phase, State, Step, Times, step
-from station.plc.port import Health, Result, Trigger
-from station.plc.registers import (
-    COMMAND_START,
-    COMMAND_WORDS,
-    STATUS_START,
-    STATUS_WORDS,
-    Control,
-    Offline,
-    VerdictCode,
-    number,
-    pack_window,
-    unpack_window,
-)
-from station.settings import PlcSettings
-
-Answer = TypeVar("Answer")
-
-TICK_S = 0.01
-READ, WRITE = 3, 4
-"""Function codes for the application's own access; 4 can never be a client's write."""
-CLIENT_WRITES = frozenset((5, 6, 15, 16, 22, 23))
+from station.plc.access import Complaints, Network, WriteRight, admitted
+from station.plc.framing import frames, refusal
 
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL)
 
+READ, WRITE = 3, 4
+"""Function codes for the application's own access; 4 can never be a client's write."""
+FUNCTIONS = frozenset((1, 2, 3, 4, 5, 6, 15, 16, 22, 23, 43))
+CLIENT_WRITES = frozenset((5, 6, 15, 16, 22, 23))
+MAX_PEERS = 128
+MAX_WAITING = 16
+"""Requests of one peer that wait for their answer."""
+MAX_BYTES = 16384
+"""Of requests that came at once; pymodbus would drop all beyond 264 without a word."""
 
-class ModbusServerLine:
-    """`Line` as a Modbus TCP server: the PLC is the client. Runs in a thread of its own."""
+_peer: contextvars.ContextVar[int] = contextvars.ContextVar("peer")
 
-    def __init__(self, settings: PlcSettings) -> None:
-        self._settings = settings
-        self._times = Times(
-            deadline_s=settings.deadline_ms / 1000,
-            result_ttl_s=settings.result_ttl_ms / 1000,
-            stuck_s=settings.stuck_ms / 1000,
-            plc_heartbeat_s=settings.plc_heartbeat_ms / 1000,
-        )
-        self._triggers: queue.SimpleQueue[Trigger] = queue.SimpleQueue()
-        self._state = State()
-        self._health = Health(False, Offline.STARTING, False, 0)
-        self._health_s = -1e9
-        self._counts = {VerdictCode.OK: 0, VerdictCode.NOK: 0, VerdictCode.ERROR: 0}
-        self._published: dict[str, int] = {"STATUS": 0, "OFFLINE_REASON": int(Offline.STARTING), "HEARTBEAT": 0}
-        self._loop: asyncio.AbstractEventLoop | None = None
+
+class _Peer(ServerRequestHandler):
+    """One connection. Its requests are answered one by one, also those that came in one packet; noise ends it."""
+
+    numbers = itertools.count(1)
+
+    def __init__(self, owner: "ModbusServer", server: ModbusTcpServer) -> None:
+        super().__init__(server, None, None, None)  # type: ignore[no-untyped-call]
+        self._owner = owner
+        self._requests: asyncio.Queue[ModbusPDU | bytes] = asyncio.Queue(MAX_WAITING)
+        self.max_buffer_size = MAX_BYTES
+        self._answering: asyncio.Task[None] | None = None
+        self.number = next(self.numbers)
+        self.name = "unknown"
+        self.heard_s = 0.0
+        """Time of the last request; 0: none yet."""
+
+    def callback_connected(self) -> None:
+        super().callback_connected()
+        self.name = str((self.transport.get_extra_info("peername") or ("unknown",))[0])
+        if self._owner.welcome(self):
+            self._answering = asyncio.create_task(self._answer())
+        else:
+            _drop(self)
+
+    def callback_disconnected(self, exc: Exception | None) -> None:
+        super().callback_disconnected(exc)
+        self.over()
+
+    def over(self) -> None:
+        """Nothing more is answered."""
+        if self._answering is not None:
+            self._answering.cancel()
+            self._answering = None
+        self._owner.goodbye(self)
+
+    def end(self, why: str) -> None:
+        """Close the connection and say why."""
+        self._owner.complaints.closed(self.name, why)
+        self.over()
+        _drop(self)
+
+    def callback_data(self, data: bytes, addr: tuple | None = None) -> int:  # type: ignore[type-arg]
+        if self._answering is None:
+            return len(data)
+        found, used, problem = frames(data)
+        try:
+            for frame in found:
+                self._requests.put_nowait(self._read(frame))
+                self.heard_s = time.monotonic()
+        except asyncio.QueueFull:
+            problem = f"sent more than {MAX_WAITING} requests without waiting for answers"
+        if problem is not None:
+            self.end(problem)
+        return used
+
+    def _read(self, frame: bytes) -> ModbusPDU | bytes:
+        """The request, or its refusal. pymodbus knows more functions than a register map needs, and stumbles over some of them."""
+        self.last_pdu = None
+        if frame[7] in FUNCTIONS:
+            with suppress(Exception):  # struct errors, index errors, its own
+                TransactionManager.callback_data(self, frame, None)
+        return refusal(frame) if self.last_pdu is None else self.last_pdu
+
+    async def _answer(self) -> None:
+        _peer.set(self.number)
+        while True:
+            request = await self._requests.get()
+            if isinstance(request, bytes):
+                self.send(request)
+                continue
+            self.last_pdu, self.last_addr = request, None
+            await self.handle_request()  # type: ignore[no-untyped-call]
+
+
+def _drop(connection: TransactionManager) -> None:
+    """Close at once: a TLS peer that is gone would be waited for."""
+    transport = connection.transport
+    connection.close()
+    if isinstance(transport, asyncio.WriteTransport):
+        transport.abort()
+
+
+class ModbusServer:
+    """Registers that peers read and write; lives in the loop that starts it. Unit ids do not matter."""
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        words: int,
+        writable: range,
+        on_write: Callable[[], None] = lambda: None,
+        allow: Sequence[Network] = (),
+        writer_idle_s: float = float("inf"),
+        tls: ssl.SSLContext | None = None,
+    ) -> None:
+        self.host, self.port = host, port
+        self._words, self._writable, self._on_write = words, writable, on_write
+        self._allow, self._right, self._tls = allow, WriteRight(writer_idle_s), tls
         self._server: ModbusTcpServer | None = None
-        self._thread: threading.Thread | None = None
-        self._wake: asyncio.Event | None = None
-        self._lock: asyncio.Lock | None = None
-        self._stopping = False
-        self.port = settings.port
+        self._peers: dict[int, _Peer] = {}
+        self.complaints = Complaints()
 
-    def start(self) -> None:
+    async def start(self) -> None:
         """Listen. Raises LineError if the port cannot be had."""
-        up: Future[None] = Future()
-        self._thread = threading.Thread(target=lambda: asyncio.run(self._run(up)), name="modbus", daemon=True)
-        self._thread.start()
-        try:
-            up.result(timeout=10)
-        except (OSError, RuntimeError, ModbusException) as error:
-            self._thread.join(timeout=5)
-            self._thread = self._loop = None
-            raise LineError(
-                f"Modbus server cannot listen on {self._settings.host}:{self._settings.port} ({error}); free the port or set plc.port"
-            ) from None
-
-    def stop(self) -> None:
-        """Wipe the record, close the connections, end the thread."""
-        if self._thread is None or self._loop is None:
-            return
-        self._stopping = True
-        if self._wake is not None and not self._loop.is_closed():
-            with suppress(RuntimeError):  # the loop may end in between
-                self._loop.call_soon_threadsafe(self._wake.set)
-        self._thread.join(timeout=5)
-
-    def next_trigger(self, timeout_s: float) -> Trigger | None:
-        """The next accepted trigger, or None."""
-        try:
-            return self._triggers.get(timeout=timeout_s)
-        except queue.Empty:
-            return None
-
-    def in_work(self, trigger: Trigger) -> bool:
-        """Whether this trigger still waits for its answer."""
-        return self._state.trigger is not None and self._state.trigger.number == trigger.number
-
-    def exposure_done(self, trigger: Trigger) -> None:
-        """The picture is taken: the part may move."""
-        self._call(self._step(exposure_done_for=trigger.number))
-
-    def publish(self, result: Result) -> bool:
-        """Offer a result; returns once it is readable. False if it came too late and was not shown."""
-        return not self._call(self._step(result=result)).refused
-
-    def checked_in(self, health: Health) -> None:
-        """The inspection is alive."""
-        self._call(self._check_in(health))
-
-    def status(self) -> dict[str, int]:
-        """STATUS, OFFLINE_REASON and HEARTBEAT as last published."""
-        return dict(self._published)
-
-    def _call(self, coroutine: Coroutine[Any, Any, Answer]) -> Answer:
-        if self._loop is None or self._loop.is_closed():
-            coroutine.close()
-            raise LineError("the Modbus server is not running")
-        try:
-            return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result(timeout=5)
-        except TimeoutError:
-            raise LineError("the Modbus server does not answer") from None
-
-    async def _run(self, up: "Future[None]") -> None:
-        self._loop = asyncio.get_running_loop()
-        self._wake, self._lock = asyncio.Event(), asyncio.Lock()
         identity = ModbusDeviceIdentification(  # type: ignore[no-untyped-call]
             info_name={"VendorName": "weldgate", "ProductCode": "WG", "ProductName": "weldgate", "MajorMinorRevision": __version__}
         )
-        device = SimDevice(
-            id=0,
-            simdata=[SimData(0, count=STATUS_START + STATUS_WORDS, datatype=DataType.REGISTERS)],
-            use_bit_addressing=True,
-            identity=identity,
-            action=self._gate,
-        )
+        memory = [SimData(0, count=self._words, datatype=DataType.REGISTERS)]
+        device = SimDevice(id=0, simdata=memory, use_bit_addressing=True, identity=identity, action=self._gate)
+        address = (self.host, self.port)
         try:
-            self._server = ModbusTcpServer(device, identity=identity, address=(self._settings.host, self._settings.port))
-            await self._server.serve_forever(background=True)
-            sockets = getattr(self._server.transport, "sockets", ())
-            self.port = sockets[0].getsockname()[1] if sockets else self._settings.port
-            await self._step()
+            if self._tls is None:
+                server = ModbusTcpServer(device, identity=identity, address=address)
+            else:  # Modbus/TCP Security keeps the MBAP header, which pymodbus' own TLS framing lacks
+                server = ModbusTlsServer(device, identity=identity, address=address, sslctx=self._tls, framer=FramerType.SOCKET)
+            server.callback_new_connection = lambda: _Peer(self, server)  # type: ignore[method-assign]
+            await server.serve_forever(background=True)
         except (OSError, RuntimeError, ModbusException) as error:
-            up.set_exception(error)
-            return
-        up.set_result(None)
-        try:
-            while not self._stopping:
-                self._wake.clear()
-                await self._step()
-                try:
-                    await asyncio.wait_for(self._wake.wait(), TICK_S)
-                except TimeoutError:
-                    continue
-        finally:
-            await self._server.async_setValues(1, WRITE, STATUS_START, [0] * STATUS_WORDS)
+            raise LineError(f"Modbus server cannot listen on {self.host}:{self.port} ({error}); free the port or set plc.port") from None
+        self._server = server
+        sockets = getattr(server.transport, "sockets", ())
+        self.port = sockets[0].getsockname()[1] if sockets else self.port
+
+    async def stop(self) -> None:
+        """Zero all, close all connections."""
+        if self._server is not None:
+            await self.write(0, [0] * self._words)
+            for peer in list(self._peers.values()):
+                peer.over()
+                _drop(peer)
             await self._server.shutdown()  # type: ignore[no-untyped-call]
+            self._server = None
+
+    async def read(self, address: int, count: int) -> list[int]:
+        """Words as they are now."""
+        return [int(w) for w in await self._running().async_getValues(1, READ, address, count)]
+
+    async def write(self, address: int, words: list[int]) -> None:
+        """All words at once."""
+        await self._running().async_setValues(1, WRITE, address, words)
+
+    def _running(self) -> ModbusTcpServer:
+        if self._server is None:
+            raise LineError("the Modbus server is not running")
+        return self._server
+
+    def welcome(self, peer: _Peer) -> bool:
+        """Whether a new connection may stay; the one that was silent longest makes room."""
+        if not admitted(peer.name, self._allow):
+            self.complaints.closed(peer.name, "is not on the list plc.allow")
+            return False
+        if len(self._peers) >= MAX_PEERS:
+            min(self._peers.values(), key=lambda p: p.heard_s).end(f"was silent longest of {MAX_PEERS} connections")
+        self._peers[peer.number] = peer
+        return True
+
+    def goodbye(self, peer: _Peer) -> None:
+        """A connection is gone."""
+        self._peers.pop(peer.number, None)
+        self._right.drop(peer.number)
 
     async def _gate(
         self, function: int, _start: int, address: int, count: int, _current: list[int], values: list[int] | list[bool] | None
     ) -> ExcCodes | None:
-        """Clients may write the command window only; each write wakes the handshake."""
+        """Refuse what a peer must not write: exception 02 outside its window, 06 while another peer has the right to write."""
         if function not in CLIENT_WRITES or values is None:
             return None
         first = address // 16 if function in (5, 15) else address
-        end = first + count  # pymodbus counts registers here, for bits too
-        if end > COMMAND_START + COMMAND_WORDS:
+        last = first + count - 1  # pymodbus counts registers here, for bits too
+        if not (first in self._writable and last in self._writable):
             return ExcCodes.ILLEGAL_ADDRESS
-        if self._wake is not None:
-            asyncio.get_running_loop().call_soon(self._wake.set)
+        if not self._right.take(_peer.get(0), time.monotonic()):
+            return ExcCodes.DEVICE_BUSY
+        asyncio.get_running_loop().call_soon(self._on_write)
         return None
 
-    async def _check_in(self, health: Health) -> None:
-        self._health, self._health_s = health, time.monotonic()
 
-    async def _step(self, exposure_done_for: int | None = None, result: Result | None = None) -> Step:
-        """One step, and a second one at once if the first asks for it; never two at a time."""
-        if self._lock is None or self._server is None:
-            raise LineError("the Modbus server is not running")
-        async with self._lock:
-            outcome = await self._step_once(self._server, exposure_done_for, result)
-            if outcome.again:
-                await self._step_once(self._server)
-            return outcome
+class _Client(AsyncModbusTcpClient):
+    """pymodbus' client, plain or over TLS; its own TLS client leaves out the MBAP header, as its TLS server does."""
 
-    async def _step_once(self, server: ModbusTcpServer, exposure_done_for: int | None = None, result: Result | None = None) -> Step:
-        """Read the command window, step, publish the whole record in one call, then act."""
-        words = await server.async_getValues(1, READ, COMMAND_START, COMMAND_WORDS)
-        command = unpack_window(COMMAND_START, [int(w) for w in words])
-        now_s = time.monotonic()
-        inputs = Inputs(
-            control=Control(number(command, "CONTROL") & 0xFF),
-            plc_heartbeat=number(command, "PLC_HEARTBEAT"),
-            trigger_id=number(command, "TRIGGER_ID"),
-            serial=str(command["PART_SERIAL"]),
-            command=number(command, "COMMAND"),
-            health=self._health,
-            health_age_s=now_s - self._health_s,
-            exposure_done_for=exposure_done_for,
-            result=result,
+    def __init__(self, host: str, port: int, timeout_s: float, tls: ssl.SSLContext | None) -> None:
+        self.comm_params = CommParams(
+            comm_type=CommType.TCP if tls is None else CommType.TLS,
+            host=host,
+            port=port,
+            sslctx=tls,
+            comm_name="client",
+            reconnect_delay=0.0,
+            reconnect_delay_max=0.0,
+            timeout_connect=timeout_s,
         )
-        before = self._state.phase
-        outcome = step(self._state, inputs, now_s, self._times)
-        self._state = outcome.state
-        if outcome.state.phase is Phase.SHOWN and before is Phase.BUSY and outcome.state.result is not None:
-            shown = outcome.state.result.verdict
-            if shown in self._counts:
-                self._counts[shown] += 1
-        await self._publish(server, now_s)
-        if outcome.start is not None:
-            self._triggers.put(outcome.start)
-        return outcome
-
-    async def _publish(self, server: ModbusTcpServer, now_s: float) -> None:
-        counts = (self._counts[VerdictCode.OK], self._counts[VerdictCode.NOK], self._counts[VerdictCode.ERROR])
-        values = status_window.values(self._state, self._health, now_s, counts)
-        await server.async_setValues(1, WRITE, STATUS_START, pack_window(STATUS_START, STATUS_WORDS, values))
-        self._published = {name: number(values, name) for name in self._published}
+        super().__init__("", retries=0)
 
 
 class ModbusClient:
-    """The PLC's side of the wire: reads the status window, writes the command window."""
+    """Registers of another machine. A request without an answer in time closes the connection: its effect is unknown."""
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, unit: int = 1, timeout_s: float = 1.0, tls: ssl.SSLContext | None = None) -> None:
+        self._host, self._port, self._unit, self._timeout_s, self._tls = host, port, unit, timeout_s, tls
         self._address = f"{host}:{port}"
-        self._client = AsyncModbusTcpClient(host, port=port, timeout=1.0, retries=0, reconnect_delay=0)
+        self._client: AsyncModbusTcpClient | None = None
 
     async def connect(self) -> None:
-        """Raises LineError if nobody answers."""
-        if not await self._client.connect():
-            raise LineError(f"no Modbus server at {self._address}; is the engine running?")
+        """A new connection. Raises LineError if nobody answers."""
+        self.close()
+        client = _Client(self._host, self._port, self._timeout_s, self._tls)
+        connected = False
+        with suppress(OSError, ModbusException):
+            connected = await client.connect()
+        if not connected:
+            _drop(client.ctx)
+            raise LineError(f"no Modbus server at {self._address}; is it running, and does a firewall let you through?")
+        self._client = client
 
-    async def read_status(self) -> list[int]:
-        """The whole status window, 76 words, in one read. Raises LineError."""
+    async def read(self, address: int, count: int) -> list[int]:
+        """Up to 125 words in one read. Raises LineError."""
         try:
-            answer = await self._client.read_holding_registers(STATUS_START, count=STATUS_WORDS)
+            answer = await self._connected().read_holding_registers(address, count=count, device_id=self._unit)
         except ModbusException as error:
-            raise LineError(f"{self._address}: {error}") from None
-        if answer.isError() or len(answer.registers) != STATUS_WORDS:
-            raise LineError(f"{self._address}: read refused: {answer}")
+            raise self._lost(f"read: {error}") from None
+        if answer.isError() or len(answer.registers) != count:
+            raise self._lost(f"read of {count} registers at {address} refused: {answer}")
         return list(answer.registers)
 
-    async def write_command(self, address: int, words: list[int]) -> None:
-        """Write into the command window. Raises LineError."""
+    async def write(self, address: int, words: list[int]) -> None:
+        """Up to 123 words in one write. Raises LineError; then it is unknown whether the peer has them."""
         try:
-            answer = await self._client.write_registers(address, words)
+            answer = await self._connected().write_registers(address, words, device_id=self._unit)
         except ModbusException as error:
-            raise LineError(f"{self._address}: {error}") from None
+            raise self._lost(f"write: {error}") from None
         if answer.isError():
-            raise LineError(f"{self._address}: write refused: {answer}")
+            raise self._lost(f"write of {len(words)} registers at {address} refused: {answer}")
+
+    def _connected(self) -> AsyncModbusTcpClient:
+        if self._client is None or not self._client.connected:
+            raise self._lost("the connection is gone")
+        return self._client
+
+    def _lost(self, why: str) -> LineError:
+        self.close()
+        return LineError(f"{self._address}: {why}")
 
     def close(self) -> None:
         """Drop the connection."""
-        self._client.close()
+        if self._client is not None:
+            _drop(self._client.ctx)
+            self._client = None

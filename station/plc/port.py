@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from station.plc.registers import Flags, Offline, VerdictCode
+from station.plc.registers import CommandCode, Flags, Offline, VerdictCode
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +16,19 @@ class Trigger:
     """Monotonic time."""
     number: int
     """Counts accepted triggers; never repeats, unlike the PLC's 16-bit id."""
+    golden: bool = False
+    """A master lies in the nest: the answer is TEST whatever is found."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command of the PLC that the station must carry out."""
+
+    code: CommandCode
+    arg: int
+    number: int
+    """Counts such commands."""
+    since_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +58,10 @@ class Health:
     config_crc: int
     out_of_spec: bool = False
     """NE 107: out of specification; the pictures drift, the parts are judged."""
+    function_check: bool = False
+    """NE 107: a master was judged wrongly; no verdict counts until it is judged right."""
+    recipe: int = 1
+    """Number of the recipe in use."""
 
 
 class Line(Protocol):
@@ -56,8 +73,11 @@ class Line(Protocol):
     def stop(self) -> None:
         """Close; leaves nothing running."""
 
-    def next_trigger(self, timeout_s: float) -> Trigger | None:
-        """The next accepted trigger, or None."""
+    def next_request(self, timeout_s: float) -> Trigger | Command | None:
+        """The next accepted trigger or command, or None."""
+
+    def command_done(self, command: Command, well: bool) -> None:
+        """A command was carried out, or refused."""
 
     def in_work(self, trigger: Trigger) -> bool:
         """Whether this trigger still waits for its answer; if not, its part may be gone."""

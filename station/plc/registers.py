@@ -16,7 +16,7 @@ Value = int | float | str | tuple[int, ...]
 COMMAND_START, COMMAND_WORDS = 0, 23
 STATUS_START, STATUS_WORDS = 100, 76
 TEST_U32, TEST_F32 = 0x12345678, 123.456
-MAP_VERSION = 1
+MAP_VERSION = 2
 
 
 class Control(IntFlag):
@@ -82,8 +82,23 @@ class Offline(IntEnum):
     ARCHIVE_FULL = 5
     PLC_SILENT = 6
     STATION_STALLED = 7
+    PREPARING = 8
+    SELF_TEST_FAILED = 9
 
 
+class CommandCode(IntEnum):
+    """Values of COMMAND; where MERLIC has the same command, its code."""
+
+    LOAD_RECIPE = 2
+    RESET = 7
+    ABORT = 9
+    ACK_ERROR = 11
+    RESET_COUNTERS = 20
+    TIME_SYNC = 21
+
+
+REFUSED = 0xFFFF
+"""CMD_ECHO of a command that was not done."""
 REASON_CODES = {reason: code for code, reason in enumerate(Reason, start=1)}
 """Values of REASON; 0: none."""
 
@@ -114,8 +129,8 @@ MAP: tuple[Register, ...] = (
     ),
     Register(1, "PLC_HEARTBEAT", "u16", "any change counts"),
     Register(2, "TRIGGER_ID", "u16", "1 to 65535, must differ from the last accepted; 0 is invalid"),
-    Register(3, "COMMAND", "u16", "command code for EXEC_COMMAND"),
-    Register(4, "ARG", "u16", "argument of the command"),
+    Register(3, "COMMAND", "u16", "command code for EXEC_COMMAND, see COMMAND"),
+    Register(4, "ARG", "u16", "argument of the command: number of the recipe"),
     Register(5, "PART_SERIAL", "ascii", "part serial, 0-padded, high byte first", 32),
     Register(21, "PLC_TIME", "u32", "epoch seconds, optional"),
     Register(100, "STATUS", "u16", "bits, see Status"),
@@ -210,6 +225,16 @@ def unpack_window(start: int, words: list[int]) -> dict[str, Value]:
         for r in MAP
         if start <= r.address and r.address + r.words <= end
     }
+
+
+def reordered(start: int, words: list[int]) -> list[int]:
+    """A window with the words of each 32-bit value exchanged, for a PLC that keeps the low word first; undone by itself."""
+    answer = list(words)
+    for r in MAP:
+        at = r.address - start
+        if r.kind in ("u32", "f32") and 0 <= at and at + r.words <= len(words):
+            answer[at], answer[at + 1] = words[at + 1], words[at]
+    return answer
 
 
 def number(values: dict[str, Value], name: str) -> int:

@@ -24,6 +24,7 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         (Status.MISSED_TRIGGER, s.missed),
         (Status.CMD_DONE, s.cmd_done),
         (Status.MAINTENANCE, s.stuck),
+        (Status.FUNCTION_CHECK, health.function_check or verdict is VerdictCode.TEST),
         (Status.OUT_OF_SPEC, health.out_of_spec),
         (Status.FAILURE, health.failure),
     ):
@@ -38,7 +39,7 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         "VERDICT": int(verdict),
         "VERDICT_INV": 0xFFFF ^ int(verdict),
         "ERROR_CODE": s.error_code,
-        "ACTIVE_RECIPE": 1,
+        "ACTIVE_RECIPE": health.recipe,
         "CONFIG_CRC": health.config_crc,
         "SEG_COUNT": SEGMENTS,
         "SEG_INVALID_MASK": ALL_SEGMENTS,

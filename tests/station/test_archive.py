@@ -10,7 +10,7 @@ from station.archive import Archive, read_records
 from station.domain import Frame, Image, Inspection, Origin, Reason
 from station.errors import RecordError
 from station.imagefile import read_image
-from station.records import Record
+from station.records import Part, Record
 from station.settings import ArchiveSettings
 from tests.parts import nok_inspection, ok_inspection, provenance
 
@@ -25,7 +25,7 @@ def archive(tmp_path: Path) -> Iterator[Archive]:
 def put(archive: Archive, image: Image | None, inspection: Inspection, trigger_id: int = 5) -> Record:
     now = datetime.now(UTC)
     frame = None if image is None else Frame(image, now, "cam", Origin.SIMULATED)
-    return archive.commit(archive.begin(frame), inspection, "S-1", trigger_id, provenance(), Origin.SIMULATED, now)
+    return archive.commit(archive.begin(frame), inspection, Part("S-1", trigger_id, Origin.SIMULATED), provenance(), now)
 
 
 def test_what_is_written_reads_back_whole(archive: Archive, tmp_path: Path, rng: np.random.Generator) -> None:

@@ -8,21 +8,25 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
 from deploy.demo import free_ports
 from station.archive import Archive, read_records
 from station.classify.drift import Reference, write_reference
 from station.classify.onnx import LOOK
-from station.cycle import Cycle, Listener
+from station.cycle import Listener
 from station.domain import Image, Reason, Verdict
-from station.errors import RecordError
+from station.errors import ModelError, RecordError
 from station.events import Event, PartEvent
-from station.plc.modbus import ModbusServerLine
-from station.plc.registers import REASON_CODES, Flags, VerdictCode
-from station.plc.simulated_line import Answer, SimulatedLine
-from station.settings import PylonSettings, Settings
-from station.startup import load_inspector, make_camera
+from station.plc.line import ModbusLine, make_line
+from station.plc.registers import REASON_CODES, CommandCode, Flags, VerdictCode
+from station.plc.simulated.line import Answer, SimulatedLine
+from station.recipe import prepare
+from station.settings import Settings
+from station.startup import make_cycle
+from station.watch import Watch
 from synth.feed import Feed
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import label_with, labels
@@ -43,7 +47,7 @@ class Station:
         """Pass parts through the line; None: no picture before the camera."""
 
         async def drive() -> list[Answer]:
-            line = SimulatedLine("127.0.0.1", self.port, accept_simulated)
+            line = SimulatedLine.at("127.0.0.1", self.port, accept_simulated)
             await line.connect()
             answers = []
             try:
@@ -51,7 +55,7 @@ class Station:
                     self.feed.withdraw() if image is None else self.feed.show(image)
                     answers.append(await line.inspect(f"T{number}"))
             finally:
-                line.close()
+                await line.close()
             return answers
 
         return asyncio.run(drive())
@@ -74,6 +78,8 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
             "model": {"path": MODEL, "ring_path": RING_MODEL, "reference_path": reference},
             "archive": {"folder": tmp_path / "records", "min_free_mb": 1},
             "plc": {"port": free_ports(1)[0], "deadline_ms": 5000},
+            "golden": {"masters": {"MASTER-OK": "OK", "MASTER-NOK": "NOK"}},
+            "recipes": {2: {"model": {"hole_threshold": 0.0001}}, 3: {"model": {"path": tmp_path / "absent.onnx"}}},
         }
     )
 
@@ -84,13 +90,10 @@ def station(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     for name, value in feed.environment.items():
         monkeypatch.setenv(name, value)
     events: list[Event] = []
-    inspector, provenance = load_inspector(settings)
-    archive, line = Archive(settings.archive), ModbusServerLine(settings.plc)
+    loaded = prepare(settings, 1)
+    archive, line = Archive(settings.archive), make_line(settings.plc)
     line.start()
-    assert isinstance(settings.camera, PylonSettings)
-    cycle = Cycle(
-        make_camera(settings), settings.camera.origin, line, inspector, archive, provenance, Listener(events.append, lambda _: None), 0.1
-    )
+    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None))
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
@@ -135,6 +138,93 @@ def test_drifting_pictures_are_told_to_plc_and_window_and_still_judged(
     assert [Flags.DRIFT in a.flags for a in answers] == alarms
 
 
+def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(station: Station, frames: dict[str, Image]) -> None:
+    good = frames[label_with("OK")["frame"]]
+
+    async def drive() -> list[object]:
+        line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
+        await line.connect()
+        station.feed.show(good)
+        seen: list[object] = [(await line.inspect("ONE")).verdict]
+        crc = line.status()["CONFIG_CRC"]
+        seen.append(await line.command(CommandCode.LOAD_RECIPE, 2))
+        assert await line.wait_ready(5.0)
+        seen += [line.status()["ACTIVE_RECIPE"], line.status()["CONFIG_CRC"] != crc]
+        answer = await line.inspect("TWO")
+        seen += [answer.verdict, answer.refused_by]
+        seen += [await line.command(CommandCode.LOAD_RECIPE, number) for number in (3, 9)]
+        assert await line.wait_ready(5.0)
+        seen += [line.status()["ACTIVE_RECIPE"], await line.command(CommandCode.LOAD_RECIPE, 1)]
+        seen.append((await line.inspect("THREE")).accepted)
+        await line.close()
+        return seen
+
+    seen = asyncio.run(drive())
+    assert seen[:4] == [VerdictCode.OK, 2, 2, True]
+    assert seen[4] is VerdictCode.NOK, "with a threshold of almost nothing every part is refused"
+    assert seen[6:] == [0xFFFF, 0xFFFF, 2, CommandCode.LOAD_RECIPE, True]
+    recipes = [r.provenance.recipe for e in read_records(station.folder) if (r := e.record) is not None]
+    assert recipes == [1, 2, 1]
+
+
+def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(station: Station, frames: dict[str, Image]) -> None:
+    good, bad = frames[label_with("OK")["frame"]], frames[label_with("hole")["frame"]]
+
+    async def drive() -> list[tuple[VerdictCode, str | None]]:
+        line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
+        await line.connect()
+        seen = []
+        for serial, image, golden in (
+            ("MASTER-OK", good, True),
+            ("PART-1", good, False),
+            ("MASTER-NOK", good, True),
+            ("PART-2", good, False),
+            ("MASTER-NOK", bad, True),
+            ("PART-3", good, False),
+        ):
+            station.feed.show(image)
+            answer = await line.inspect(serial, golden=golden)
+            seen.append((answer.verdict, answer.refused_by))
+        await line.close()
+        return seen
+
+    seen = asyncio.run(drive())
+    masters = [seen[0], seen[2], seen[4]]
+    assert [verdict for verdict, _ in masters] == [VerdictCode.TEST] * 3
+    assert None not in [refused for _, refused in masters]
+    assert seen[1] == (VerdictCode.OK, None)
+    assert seen[3] == (VerdictCode.OK, "station reports failure or function check")
+    assert seen[5] == (VerdictCode.OK, None)
+    assert [(r.golden, str(r.verdict)) for e in read_records(station.folder) if (r := e.record) is not None] == [
+        (True, "OK"),
+        (False, "OK"),
+        (True, "OK"),
+        (False, "OK"),
+        (True, "NOK"),
+        (False, "OK"),
+    ]
+    assert [e for e in station.events if isinstance(e, PartEvent)][-1].record.verdict is Verdict.OK
+
+
+def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
+    settings: Settings, frames: dict[str, Image], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    cv2.imwrite(str(tmp_path / "stored.png"), frames[label_with("hole")["frame"]])
+    model = settings.model.model_copy(update={"self_test_path": tmp_path / "stored.png", "self_test_s": 0.5})
+    loaded = prepare(settings.model_copy(update={"model": model}), 1)
+    watch = Watch(loaded, {}, 0.0)
+    watch.idle()
+    assert not watch.self_test_failed
+    assert loaded.self_test is not None
+    loaded.self_test._image[900:1100, :] = 0
+    watch.idle()
+    assert watch.self_test_failed
+    assert "self-test failed" in caplog.text
+    cv2.imwrite(str(tmp_path / "stored.png"), np.zeros((2160, 4200), np.uint8))
+    with pytest.raises(ModelError, match="cannot be judged"):
+        prepare(settings.model_copy(update={"model": model}), 1)
+
+
 def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(station: Station, frames: dict[str, Image]) -> None:
     good = frames[label_with("OK")["frame"]]
     black = good * 0
@@ -160,13 +250,13 @@ def test_the_verdict_is_seen_only_after_its_record_is_on_disk(
     station: Station, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     listed: list[int] = []
-    publish = ModbusServerLine.publish
+    publish = ModbusLine.publish
 
-    def look_first(line: ModbusServerLine, result: object) -> bool:
+    def look_first(line: ModbusLine, result: object) -> bool:
         listed.append(sum(e.problem is None for e in read_records(station.folder)))
         return publish(line, result)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(ModbusServerLine, "publish", look_first)
+    monkeypatch.setattr(ModbusLine, "publish", look_first)
     station.run([frames[label_with("OK")["frame"]]] * 2)
     assert listed == [1, 2]
 
@@ -175,12 +265,12 @@ def test_a_camera_that_is_absent_at_start_is_said_and_found_later(station: Stati
     os.environ["PYLON_CAMEMU"] = "0"
 
     async def absent_then_back() -> Answer:
-        line = SimulatedLine("127.0.0.1", station.port, accept_simulated=True)
+        line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
         await line.connect()
         try:
             return await line.inspect("back", window_s=10.0)
         finally:
-            line.close()
+            await line.close()
 
     station.feed.show(frames[label_with("OK")["frame"]])
     back = threading.Timer(1.0, lambda: os.environ.update(PYLON_CAMEMU="1"))

@@ -10,8 +10,8 @@ from pymodbus.client import AsyncModbusTcpClient
 
 from deploy.demo import free_ports
 from station.errors import LineError
-from station.plc.modbus import ModbusServerLine
-from station.plc.port import Health, Result
+from station.plc.line import ModbusLine, make_line
+from station.plc.port import Health, Result, Trigger
 from station.plc.registers import Flags, Offline, VerdictCode
 from station.settings import PlcSettings
 
@@ -19,15 +19,15 @@ pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:pymodbus")
 
 
 @pytest.fixture
-def line() -> Iterator[ModbusServerLine]:
-    server = ModbusServerLine(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
+def line() -> Iterator[ModbusLine]:
+    server = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
     server.start()
     server.checked_in(Health(True, Offline.NONE, False, 7))
     yield server
     server.stop()
 
 
-def talk(line: ModbusServerLine, conversation: object) -> object:
+def talk(line: ModbusLine, conversation: object) -> object:
     async def run() -> object:
         client = AsyncModbusTcpClient("127.0.0.1", port=line.port, timeout=2, retries=0)
         assert await client.connect()
@@ -39,7 +39,7 @@ def talk(line: ModbusServerLine, conversation: object) -> object:
     return asyncio.run(run())
 
 
-def test_every_register_reads_by_both_functions_and_every_unit(line: ModbusServerLine) -> None:
+def test_every_register_reads_by_both_functions_and_every_unit(line: ModbusLine) -> None:
     async def conversation(client: AsyncModbusTcpClient) -> None:
         for unit in (0, 1, 255):
             holding = await client.read_holding_registers(168, count=4, device_id=unit)
@@ -53,7 +53,7 @@ def test_every_register_reads_by_both_functions_and_every_unit(line: ModbusServe
     talk(line, conversation)
 
 
-def test_the_status_window_is_closed_to_writers(line: ModbusServerLine) -> None:
+def test_the_status_window_is_closed_to_writers(line: ModbusLine) -> None:
     async def conversation(client: AsyncModbusTcpClient) -> None:
         attempts = [
             client.write_register(105, 1),
@@ -75,7 +75,7 @@ def test_the_status_window_is_closed_to_writers(line: ModbusServerLine) -> None:
     talk(line, conversation)
 
 
-def test_a_bit_written_as_a_coil_is_seen(line: ModbusServerLine) -> None:
+def test_a_bit_written_as_a_coil_is_seen(line: ModbusLine) -> None:
     async def conversation(client: AsyncModbusTcpClient) -> int:
         await client.write_coil(0, True)
         for _ in range(100):
@@ -89,15 +89,15 @@ def test_a_bit_written_as_a_coil_is_seen(line: ModbusServerLine) -> None:
     assert bits & 3 == 3
 
 
-def test_a_result_is_readable_when_publish_returns(line: ModbusServerLine) -> None:
+def test_a_result_is_readable_when_publish_returns(line: ModbusLine) -> None:
     async def start(client: AsyncModbusTcpClient) -> None:
         await client.write_registers(0, [1, 1, 77])
         await asyncio.sleep(0.05)
         await client.write_register(0, 3)
 
     talk(line, start)
-    trigger = line.next_trigger(2.0)
-    assert trigger is not None
+    trigger = line.next_request(2.0)
+    assert isinstance(trigger, Trigger)
     assert trigger.trigger_id == 77
     assert line.in_work(trigger)
     assert line.publish(Result(trigger, VerdictCode.NOK, 70000, 1, 0, (5,) * 21, 8, 0, Flags.SIMULATED))
@@ -117,13 +117,13 @@ def test_a_taken_port_is_said_in_one_line() -> None:
     with socket.socket() as holder:
         holder.bind(("127.0.0.1", 0))
         holder.listen()
-        server = ModbusServerLine(PlcSettings(port=holder.getsockname()[1]))
+        server = make_line(PlcSettings(port=holder.getsockname()[1]))
         with pytest.raises(LineError, match=r"plc\.port"):
             server.start()
         server.stop()
 
 
-def test_noise_on_the_wire_changes_nothing(line: ModbusServerLine) -> None:
+def test_noise_on_the_wire_changes_nothing(line: ModbusLine) -> None:
     for junk in (b"", b"\x00" * 300, b"GET / HTTP/1.0\r\n\r\n", b"\x00\x01\x00\x00\xff\xff\x01\x10" + b"\xff" * 250):
         with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
             peer.sendall(junk)

@@ -7,8 +7,8 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from station.plc import status_window
 from station.plc.handshake import Inputs, State, Step, Times, ready, step
-from station.plc.port import Health, Result, Trigger
-from station.plc.registers import Control, Flags, Offline, Status, VerdictCode, number
+from station.plc.port import Command, Health, Result, Trigger
+from station.plc.registers import REFUSED, CommandCode, Control, Flags, Offline, Status, VerdictCode, number
 
 WELL = Health(True, Offline.NONE, False, 7)
 LOST = Health(False, Offline.CAMERA_LOST, True, 7)
@@ -27,15 +27,40 @@ class Driver:
         self.state, self.now, self.beat = State(), 100.0, 0
         self.control, self.trigger_id, self.health, self.silent, self.command = Control(0), 0, WELL, False, 0
         self.started: list[Trigger] = []
+        self.commanded: list[Command] = []
 
-    def step(self, offered: Result | None = None, wait_s: float = 0.01, exposed: int | None = None) -> Step:
+    def step(
+        self,
+        offered: Result | None = None,
+        wait_s: float = 0.01,
+        exposed: int | None = None,
+        done: tuple[int, bool] | None = None,
+        link: bool = True,
+        link_was_lost: bool = False,
+    ) -> Step:
         self.now += wait_s
         self.beat += not self.silent
-        inputs = Inputs(self.control, self.beat & 0xFFFF, self.trigger_id, "S", self.command, self.health, 0.0, exposed, offered)
+        inputs = Inputs(
+            self.control,
+            self.beat & 0xFFFF,
+            self.trigger_id,
+            "S",
+            self.command,
+            self.health,
+            0.0,
+            exposed,
+            offered,
+            2,
+            done,
+            link,
+            link_was_lost,
+        )
         outcome = step(self.state, inputs, self.now, TIMES)
         self.state = outcome.state
         if outcome.start is not None:
             self.started.append(outcome.start)
+        if outcome.command is not None:
+            self.commanded.append(outcome.command)
         if outcome.again:
             self.step(wait_s=0)
         return outcome
@@ -191,11 +216,64 @@ def test_a_trigger_in_the_step_of_the_result_does_not_swallow_it(plc: Driver) ->
     assert Status.MISSED_TRIGGER in plc.bits()
 
 
-def test_a_golden_check_is_refused_and_said(plc: Driver) -> None:
+def test_a_golden_check_starts_a_part_that_says_so(plc: Driver) -> None:
     plc.control, plc.trigger_id = ON | Control.TRIGGER | Control.GOLDEN_CHECK, 3
     plc.step()
-    assert plc.started == []
-    assert plc.values()["ERROR_CODE"] == 0x2105
+    assert [t.golden for t in plc.started] == [True]
+    plc.step(result(plc.started[-1], VerdictCode.TEST))
+    assert plc.bits() & (Status.OK | Status.NOK | Status.FUNCTION_CHECK) == Status.FUNCTION_CHECK
+
+
+@pytest.mark.parametrize(("well", "echo"), [(True, 2), (False, REFUSED)])
+def test_a_recipe_is_loaded_with_ready_at_zero_and_the_result_wiped(well: bool, echo: int, plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(plc.started[-1]))
+    plc.control, plc.command = ON | Control.EXEC_COMMAND, CommandCode.LOAD_RECIPE
+    plc.step()
+    (command,) = plc.commanded
+    assert (plc.values()["VERDICT"], plc.values()["OFFLINE_REASON"]) == (0, Offline.PREPARING)
+    assert not plc.bits() & (Status.READY | Status.CMD_DONE)
+    plc.step(done=(command.number, well))
+    assert plc.values()["CMD_ECHO"] == echo
+    assert plc.bits() & (Status.READY | Status.CMD_DONE) == Status.READY | Status.CMD_DONE
+    plc.control = ON
+    plc.step()
+    assert Status.CMD_DONE not in plc.bits()
+
+
+def test_a_command_that_nobody_carries_out_is_refused_in_the_end(plc: Driver) -> None:
+    plc.control, plc.command = ON | Control.EXEC_COMMAND, CommandCode.LOAD_RECIPE
+    plc.step()
+    plc.step(wait_s=TIMES.command_s + 1)
+    assert plc.values()["CMD_ECHO"] == REFUSED
+    assert Status.READY in plc.bits()
+    assert plc.step(done=(1, True)).state.cmd_echo == REFUSED
+
+
+def test_a_command_while_a_part_is_in_work_is_refused_and_the_part_goes_on(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.control, plc.command = plc.control | Control.EXEC_COMMAND, CommandCode.LOAD_RECIPE
+    plc.step()
+    assert plc.commanded == []
+    assert plc.values()["CMD_ECHO"] == REFUSED
+    assert not plc.step(result(plc.started[-1])).refused
+
+
+def test_abort_as_a_command(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.control, plc.command = plc.control | Control.EXEC_COMMAND, CommandCode.ABORT
+    plc.step()
+    assert plc.values()["ERROR_CODE"] == 0x2102
+
+
+def test_a_link_lost_for_long_ends_the_part_and_a_result_written_again_too_late_is_an_error(plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(plc.started[-1]))
+    plc.step(wait_s=TIMES.deadline_s + 0.5, link_was_lost=True)
+    assert (plc.values()["VERDICT"], plc.values()["ERROR_CODE"]) == (VerdictCode.ERROR, 0x2105)
+    plc.step(link=False)
+    assert plc.values()["VERDICT"] == 0
+    assert plc.values()["OFFLINE_REASON"] == Offline.PLC_SILENT
 
 
 def test_the_first_error_code_stays_until_cleared(plc: Driver) -> None:
@@ -277,6 +355,22 @@ class AnyInputs(RuleBasedStateMachine):
                 self.judged_ok.add(trigger.number)
             self.plc.step(result(trigger, verdict))
 
+    @rule(code=st.sampled_from([0, 2, 7, 9, 11, 20, 21, 99]))
+    def command(self, code: int) -> None:
+        self.plc.command = code
+        self.plc.control |= Control.EXEC_COMMAND
+        self.plc.step()
+        self.plc.control &= ~Control.EXEC_COMMAND
+
+    @rule(back=st.integers(0, 2), well=st.booleans())
+    def carried_out(self, back: int, well: bool) -> None:
+        if back < len(self.plc.commanded):
+            self.plc.step(done=(self.plc.commanded[-1 - back].number, well))
+
+    @rule(wait_s=st.sampled_from([0.01, 1.0, 3.0]), back=st.booleans())
+    def lose_the_link(self, wait_s: float, back: bool) -> None:
+        self.plc.step(wait_s=wait_s, link=back, link_was_lost=True)
+
     @invariant()
     def ok_only_for_a_judged_frame(self) -> None:
         values, bits = self.plc.values(), self.plc.bits()
@@ -300,7 +394,7 @@ class AnyInputs(RuleBasedStateMachine):
         for control in (Control(0), ON):
             spare.control = control
             for _ in range(3):
-                spare.step()
+                spare.step(wait_s=TIMES.command_s + 1 if spare.state.command is not None else 0.01)
         assert Status.READY in spare.bits()
 
 

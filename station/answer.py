@@ -1,0 +1,40 @@
+"""What the PLC is told of a record; pure."""
+
+from station.domain import Origin, Verdict
+from station.plc.handshake import ALL_SEGMENTS
+from station.plc.port import Result, Trigger
+from station.plc.registers import REASON_CODES, Flags, VerdictCode
+from station.records import Record
+
+ERROR_NOT_JUDGED = 0x1000
+
+
+def verdict_code(record: Record) -> VerdictCode:
+    """A replayed part or a master never releases anything."""
+    if record.verdict is Verdict.ERROR:
+        return VerdictCode.ERROR
+    if record.golden or record.origin is Origin.REPLAY:
+        return VerdictCode.TEST
+    return VerdictCode.OK if record.verdict is Verdict.OK else VerdictCode.NOK
+
+
+def answer(trigger: Trigger, record: Record, nok: tuple[bool, ...], novel: bool, drifting: bool) -> Result:
+    """The result for a trigger; `nok`: refused segments, empty if none was judged."""
+    inspection = record.inspection
+    reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]
+    flags = (
+        (Flags.SIMULATED, record.origin is Origin.SIMULATED),
+        (Flags.NOVEL, novel),
+        (Flags.DRIFT, drifting),
+    )
+    return Result(
+        trigger=trigger,
+        verdict=verdict_code(record),
+        inspection_id=record.inspection_id,
+        reason=reason,
+        error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
+        seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
+        seg_nok_mask=sum(1 << i for i, bad in enumerate(nok) if bad),
+        seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
+        flags=Flags(sum(flag for flag, on in flags if on)),
+    )

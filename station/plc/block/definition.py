@@ -1,0 +1,221 @@
+"""The function block that a PLC runs against a station: variables, the acceptance rule and the handshake, in plain Structured Text.
+
+Only what IEC 61131-3 and SCL have in common is used, so that the dialects differ in declarations alone.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from station.plc.registers import BY_NAME, COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Control, Flags, Register, Status
+
+NAME = "WeldgateStation"
+RECORD = "WeldgateStatus"
+MAX_AGE_10MS = 500
+HEARTBEAT = "T#500ms"
+OWN_HEARTBEAT = "T#100ms"
+
+Role = Literal["input", "output", "local"]
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One variable of the block."""
+
+    role: Role
+    name: str
+    type: str
+    meaning: str
+    initial: str = ""
+
+
+def word(name: str, offset: int = 0) -> str:
+    """The word of a register in the status window."""
+    return f"Window[{BY_NAME[name].address - STATUS_START + offset}]"
+
+
+def bit(name: str, mask: int) -> str:
+    """Whether a bit of a register in the status window is set."""
+    return f"(({word(name)} AND 16#{mask:04X}) <> 16#0000)"
+
+
+POINTS: tuple[tuple[str, str], ...] = (
+    ("heartbeat stands still", "BeatFresh"),
+    ("RESULT_VALID is 0", bit("STATUS", Status.RESULT_VALID)),
+    ("OK and NOK are not 1 and 0", f"{bit('STATUS', Status.OK)} AND NOT {bit('STATUS', Status.NOK)}"),
+    ("VERDICT is not OK with its complement", f"({word('VERDICT')} = 16#0001) AND ({word('VERDICT_INV')} = 16#FFFE)"),
+    ("SEQ_HEAD differs from SEQ_TAIL", f"({word('SEQ_HEAD')} = {word('SEQ_TAIL')})"),
+    ("result of another trigger", f"(WORD_TO_UINT({word('RESULT_TRIGGER_ID')}) = TriggerId)"),
+    ("result of another serial", "SerialSame"),
+    ("recipe is not the expected one", f"(WORD_TO_UINT({word('ACTIVE_RECIPE')}) = Recipe)"),
+    ("configuration is not the released one", f"({word('CONFIG_CRC')} = Crc)"),
+    ("result too old", f"(WORD_TO_UINT({word('RESULT_AGE_10MS')}) <= {MAX_AGE_10MS})"),
+    ("station reports failure or function check", f"NOT {bit('STATUS', Status.FAILURE | Status.FUNCTION_CHECK)}"),
+    ("picture of an emulated camera", f"AcceptSimulated OR NOT {bit('FLAGS', Flags.SIMULATED)}"),
+)
+"""The acceptance rule: what is said if a point does not hold, and the point. OK passes only if all hold in one read."""
+NOT_READY, NO_RESULT = len(POINTS) + 1, len(POINTS) + 2
+REFUSALS = ("", *(name for name, _ in POINTS), "station not READY", "no result inside the window")
+"""What Refusal means."""
+
+
+def fields() -> list[tuple[str, str, Register]]:
+    """Name, type and register of each field of the record: 32-bit values as UDINT, text as words."""
+    answer = []
+    for r in MAP:
+        if r.address >= STATUS_START:
+            plain = {"u16": "UINT", "u32": "UDINT", "f32": "UDINT", "ascii": "WORD"}[r.kind]
+            count = r.words if r.kind == "ascii" else r.count
+            answer.append((r.name, plain if count == 1 else f"ARRAY[0..{count - 1}] OF {plain}", r))
+    return answer
+
+
+VARIABLES: tuple[Variable, ...] = (
+    Variable("input", "Window", f"ARRAY[0..{STATUS_WORDS - 1}] OF WORD", "status window, taken in one read"),
+    Variable("input", "Fresh", "BOOL", "TRUE in the cycle in which a new read has arrived"),
+    Variable("input", "Start", "BOOL", "rising edge: judge the part that is in the nest now"),
+    Variable("input", "Golden", "BOOL", "a master is in the nest; it never passes"),
+    Variable("input", "Serial", "ARRAY[0..15] OF WORD", "serial of the part, two characters a word, the first in the high byte"),
+    Variable("input", "Recipe", "UINT", "expected ACTIVE_RECIPE", "1"),
+    Variable("input", "Crc", "WORD", "released CONFIG_CRC"),
+    Variable("input", "AcceptSimulated", "BOOL", "TRUE only in a demonstration without a camera"),
+    Variable("input", "WindowTime", "TIME", "the result must come within", "T#4s"),
+    Variable("output", "Command", f"ARRAY[0..{COMMAND_WORDS - 1}] OF WORD", "command window, to be written whole"),
+    Variable("output", "PartOk", "BOOL", "the part may pass; FALSE until all points held in one read"),
+    Variable("output", "PartDone", "BOOL", "the part is answered"),
+    Variable("output", "Busy", "BOOL", "a part is in work"),
+    Variable("output", "Refusal", "UINT", "first point that did not hold, 0: none"),
+    Variable("output", "Info", RECORD, "the status window, decoded"),
+    Variable("local", "State", "UINT", "0 idle, 10 wait for READY, 20 number written, 30 triggered, 40 in work, 50 acknowledged"),
+    Variable("local", "TriggerId", "UINT", "of the part in the nest"),
+    Variable("local", "BeatKnown", "BOOL", ""),
+    Variable("local", "BeatEver", "BOOL", ""),
+    Variable("local", "BeatMoved", "BOOL", ""),
+    Variable("local", "BeatFresh", "BOOL", ""),
+    Variable("local", "BeatSeen", "WORD", ""),
+    Variable("local", "SerialSame", "BOOL", ""),
+    Variable("local", "OwnBeat", "UDINT", ""),
+    Variable("local", "i", "INT", ""),
+    Variable("local", "BeatTimer", "TON", ""),
+    Variable("local", "OwnTimer", "TON", ""),
+    Variable("local", "PartTimer", "TON", ""),
+    Variable("local", "StartEdge", "R_TRIG", ""),
+)
+
+
+def body() -> str:
+    """The block's statements."""
+    rule = "\n".join(
+        f"        IF (Refusal = 0) AND NOT ({point}) THEN\n            Refusal := {number}; (* {name} *)\n        END_IF;"
+        for number, (name, point) in enumerate(POINTS, start=1)
+    )
+    enable, trigger, acknowledge = int(Control.ENABLE), int(Control.ENABLE | Control.TRIGGER), int(Control.ENABLE | Control.RESULT_ACK)
+    golden = trigger | int(Control.GOLDEN_CHECK)
+    serial, echo = BY_NAME["PART_SERIAL"].address, BY_NAME["SERIAL_ECHO"].address - STATUS_START
+    return f"""\
+(* heartbeat of the station: must move within {HEARTBEAT} *)
+BeatMoved := FALSE;
+IF Fresh THEN
+    BeatMoved := BeatKnown AND ({word("HEARTBEAT")} <> BeatSeen);
+    BeatSeen := {word("HEARTBEAT")};
+    BeatKnown := TRUE;
+END_IF;
+BeatEver := BeatEver OR BeatMoved;
+BeatTimer(IN := NOT BeatMoved, PT := {HEARTBEAT});
+BeatFresh := BeatEver AND NOT BeatTimer.Q;
+
+(* our own heartbeat *)
+OwnTimer(IN := NOT OwnTimer.Q, PT := {OWN_HEARTBEAT});
+IF OwnTimer.Q THEN
+    OwnBeat := (OwnBeat + 1) MOD 65536;
+    Command[1] := UDINT_TO_WORD(OwnBeat);
+END_IF;
+
+(* the record, decoded *)
+{_decoded()}
+
+StartEdge(CLK := Start);
+PartTimer(IN := (State <> 0), PT := WindowTime);
+CASE State OF
+0:
+    Command[0] := 16#{enable:04X};
+    IF StartEdge.Q THEN
+        PartOk := FALSE;
+        PartDone := FALSE;
+        Refusal := 0;
+        Busy := TRUE;
+        State := 10;
+    END_IF;
+10:
+    IF Fresh AND {bit("STATUS", Status.READY)} THEN
+        TriggerId := (TriggerId MOD 65535) + 1;
+        IF TriggerId = WORD_TO_UINT({word("ACK_TRIGGER_ID")}) THEN
+            TriggerId := (TriggerId MOD 65535) + 1;
+        END_IF;
+        Command[2] := UINT_TO_WORD(TriggerId);
+        FOR i := 0 TO 15 DO
+            Command[{serial} + i] := Serial[i];
+        END_FOR;
+        State := 20;
+    END_IF;
+20:
+    IF Fresh THEN
+        IF Golden THEN
+            Command[0] := 16#{golden:04X};
+        ELSE
+            Command[0] := 16#{trigger:04X};
+        END_IF;
+        State := 30;
+    END_IF;
+30:
+    IF Fresh AND {bit("STATUS", Status.TRIGGER_ACK)} AND (WORD_TO_UINT({word("ACK_TRIGGER_ID")}) = TriggerId) THEN
+        Command[0] := 16#{enable:04X};
+        State := 40;
+    END_IF;
+40:
+    IF Fresh AND {bit("STATUS", Status.RESULT_VALID)} THEN
+        SerialSame := TRUE;
+        FOR i := 0 TO 15 DO
+            SerialSame := SerialSame AND (Window[{echo} + i] = Serial[i]);
+        END_FOR;
+{rule}
+        PartOk := (Refusal = 0) AND NOT Golden;
+        Command[0] := 16#{acknowledge:04X};
+        State := 50;
+    END_IF;
+50:
+    IF Fresh AND NOT {bit("STATUS", Status.RESULT_VALID)} THEN
+        Command[0] := 16#{enable:04X};
+        Busy := FALSE;
+        PartDone := TRUE;
+        State := 0;
+    END_IF;
+END_CASE;
+
+(* the window is over: whatever comes now is too late *)
+IF PartTimer.Q AND (State <> 0) THEN
+    IF State < 30 THEN
+        Refusal := {NOT_READY};
+    ELSIF State < 50 THEN
+        Refusal := {NO_RESULT};
+    END_IF;
+    PartOk := PartOk AND (State = 50);
+    Command[0] := 16#{enable:04X};
+    Busy := FALSE;
+    PartDone := TRUE;
+    State := 0;
+END_IF;
+"""
+
+
+def _decoded() -> str:
+    lines = []
+    for name, _, r in fields():
+        at = r.address - STATUS_START
+        if r.kind in ("u32", "f32"):
+            lines.append(f"Info.{name} := (WORD_TO_UDINT(Window[{at}]) * 65536) + WORD_TO_UDINT(Window[{at + 1}]);")
+        elif r.words == 1:
+            lines.append(f"Info.{name} := WORD_TO_UINT(Window[{at}]);")
+        else:
+            value = f"Window[{at} + i]" if r.kind == "ascii" else f"WORD_TO_UINT(Window[{at} + i])"
+            lines.append(f"FOR i := 0 TO {r.words - 1} DO\n    Info.{name}[i] := {value};\nEND_FOR;")
+    return "\n".join(lines)

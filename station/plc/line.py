@@ -1,0 +1,267 @@
+"""`Line` over Modbus, whichever side is the server: a thread whose loop alone steps the handshake and touches the wire."""
+
+import asyncio
+import logging
+import queue
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from contextlib import suppress
+
+from station.errors import LineError
+from station.plc import status_window
+from station.plc.handshake import Inputs, Phase, State, Step, Times, step
+from station.plc.port import Command, Health, Result, Trigger
+from station.plc.registers import (
+    COMMAND_START,
+    COMMAND_WORDS,
+    STATUS_START,
+    STATUS_WORDS,
+    CommandCode,
+    Control,
+    Offline,
+    Value,
+    VerdictCode,
+    number,
+    pack_window,
+    unpack_window,
+)
+from station.plc.tls import client_context, server_context
+from station.plc.wire import ClientWire, ServerWire, Wire
+from station.settings import PlcSettings
+
+log = logging.getLogger("weldgate.line")
+
+GRACE_S = 2.0
+"""A link lost for longer ends the part in work, if no heartbeat is watched."""
+ANSWER_S = 5.0
+"""Beyond the deadline a published result is answered, one way or the other, within this time."""
+
+Bus = Callable[[float, dict[str, Value], dict[str, Value]], None]
+"""Hears command and status window after every step, with the epoch time."""
+
+
+def make_line(settings: PlcSettings, bus: Bus = lambda _time, _command, _status: None) -> "ModbusLine":
+    """The line that the settings name, not yet started. Raises SettingsError."""
+    times = Times(
+        deadline_s=settings.deadline_ms / 1000,
+        result_ttl_s=settings.result_ttl_ms / 1000,
+        stuck_s=settings.stuck_ms / 1000,
+        plc_heartbeat_s=settings.plc_heartbeat_ms / 1000,
+    )
+    low_first, tls = settings.low_word_first, settings.tls
+    if settings.mode == "server":
+        context = None if tls is None else server_context(tls)
+        idle_s = settings.writer_idle_ms / 1000
+        return ModbusLine(ServerWire(settings.host, settings.port, settings.allow, idle_s, low_first, context), times, bus)
+    context = None if tls is None else client_context(tls)
+    bases, poll_s, timeout_s = (settings.command_base, settings.status_base), settings.poll_ms / 1000, settings.timeout_ms / 1000
+    wire = ClientWire(settings.host, settings.port, settings.unit, bases, poll_s, timeout_s, low_first, context)
+    return ModbusLine(wire, times, bus)
+
+
+class ModbusLine:
+    """The station's side of the handshake."""
+
+    def __init__(self, wire: Wire, times: Times, bus: Bus = lambda _time, _command, _status: None) -> None:
+        self._wire, self._times, self._bus = wire, times, bus
+        self._requests: queue.SimpleQueue[Trigger | Command] = queue.SimpleQueue()
+        self._state = State()
+        self._health, self._health_s = Health(False, Offline.STARTING, False, 0), -1e9
+        self._counts = {VerdictCode.OK: 0, VerdictCode.NOK: 0, VerdictCode.ERROR: 0}
+        self._published: dict[str, int] = {"STATUS": 0, "OFFLINE_REASON": int(Offline.STARTING), "HEARTBEAT": 0}
+        self._command = unpack_window(COMMAND_START, [0xFF] + [0] * (COMMAND_WORDS - 1))
+        self._exposed: int | None = None
+        self._offered: tuple[Result, Future[bool]] | None = None
+        self._done: tuple[int, bool] | None = None
+        self._after: list[Callable[[], None]] = []
+        """To do once the PLC can read what was stepped."""
+        self._lost_s: float | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread: threading.Thread | None = None
+        self._wake: asyncio.Event | None = None
+        self._stopping = False
+
+    @property
+    def port(self) -> int:
+        """Port in use."""
+        return self._wire.port
+
+    def start(self) -> None:
+        """Listen, or begin to look for the PLC. Raises LineError."""
+        up: Future[None] = Future()
+        self._thread = threading.Thread(target=lambda: asyncio.run(self._run(up)), name="modbus", daemon=True)
+        self._thread.start()
+        try:
+            up.result(timeout=10)
+        except LineError:
+            self._thread.join(timeout=5)
+            self._thread = self._loop = None
+            raise
+
+    def stop(self) -> None:
+        """Wipe the record, close the connections, end the thread."""
+        if self._thread is None:
+            return
+        self._stopping = True
+        with suppress(LineError):
+            self._poke()
+        self._thread.join(timeout=10)
+        self._thread = None
+
+    def next_request(self, timeout_s: float) -> Trigger | Command | None:
+        """The next accepted trigger or command, or None."""
+        try:
+            return self._requests.get(timeout=timeout_s)
+        except queue.Empty:
+            return None
+
+    def in_work(self, trigger: Trigger) -> bool:
+        """Whether this trigger still waits for its answer."""
+        return self._state.trigger is not None and self._state.trigger.number == trigger.number
+
+    def exposure_done(self, trigger: Trigger) -> None:
+        """The picture is taken: the part may move."""
+        self._exposed = trigger.number
+        self._poke()
+
+    def command_done(self, command: Command, well: bool) -> None:
+        """A command was carried out, or refused."""
+        self._done = (command.number, well)
+        self._poke()
+
+    def publish(self, result: Result) -> bool:
+        """Offer a result; returns once it is readable. False if it came too late or may not have reached the PLC."""
+        answer: Future[bool] = Future()
+        self._offered = (result, answer)
+        self._poke()
+        try:
+            return answer.result(timeout=self._times.deadline_s + ANSWER_S)
+        except TimeoutError:
+            raise LineError("the Modbus line does not answer") from None
+
+    def checked_in(self, health: Health) -> None:
+        """The inspection is alive."""
+        if self._loop is None or self._loop.is_closed():
+            raise LineError("the Modbus line is not running")
+        self._health, self._health_s = health, time.monotonic()
+
+    def status(self) -> dict[str, int]:
+        """STATUS, OFFLINE_REASON and HEARTBEAT as last published."""
+        return dict(self._published)
+
+    def _poke(self) -> None:
+        if self._loop is None or self._loop.is_closed():
+            raise LineError("the Modbus line is not running")
+        if self._wake is not None:
+            with suppress(RuntimeError):  # the loop may end in between
+                self._loop.call_soon_threadsafe(self._wake.set)
+
+    async def _run(self, up: "Future[None]") -> None:
+        self._loop, self._wake = asyncio.get_running_loop(), asyncio.Event()
+        try:
+            await self._wire.open(self._wake.set)
+            await self._step()
+        except LineError as error:
+            up.set_exception(error)
+            return
+        up.set_result(None)
+        try:
+            while not self._stopping:
+                self._wake.clear()
+                while await self._step():
+                    pass
+                try:
+                    await asyncio.wait_for(self._wake.wait(), self._wire.tick_s)
+                except TimeoutError:
+                    continue
+        finally:
+            await self._wire.close()
+
+    async def _step(self) -> bool:
+        """Read the command window, step, publish the whole record, then act. Whether to step again at once."""
+        now_s, link = time.monotonic(), True
+        try:
+            self._command = unpack_window(COMMAND_START, await self._wire.read_command())
+        except LineError as error:
+            link = False
+            self._link_lost(error, now_s)
+        if self._lost_s is not None and not link and now_s - self._lost_s < (self._times.plc_heartbeat_s or GRACE_S):
+            return False
+        outcome = step(self._state, self._inputs(now_s, link), now_s, self._times)
+        self._count(outcome.state)
+        self._state = outcome.state
+        self._plan(outcome)
+        values = self._values(now_s)
+        if link:
+            try:
+                await self._wire.publish(pack_window(STATUS_START, STATUS_WORDS, values))
+            except LineError as error:
+                self._link_lost(error, now_s)
+                return False
+            self._lost_s = None
+        self._published = {name: number(values, name) for name in self._published}
+        self._bus(time.time(), self._command, values)
+        after, self._after = self._after, []
+        for act in after:
+            act()
+        return outcome.again
+
+    def _inputs(self, now_s: float, link: bool) -> Inputs:
+        command = self._command
+        exposed, self._exposed = self._exposed, None
+        done, self._done = self._done, None
+        return Inputs(
+            control=Control(number(command, "CONTROL") & 0xFF),
+            plc_heartbeat=number(command, "PLC_HEARTBEAT"),
+            trigger_id=number(command, "TRIGGER_ID"),
+            serial=str(command["PART_SERIAL"]),
+            command=number(command, "COMMAND"),
+            health=self._health,
+            health_age_s=now_s - self._health_s,
+            exposure_done_for=exposed,
+            result=None if self._offered is None else self._offered[0],
+            arg=number(command, "ARG"),
+            command_done=done,
+            link=link,
+            link_was_lost=self._lost_s is not None,
+        )
+
+    def _plan(self, outcome: Step) -> None:
+        if self._offered is not None:
+            (result, answer), self._offered = self._offered, None
+            self._after.append(lambda: answer.set_result(not outcome.refused and self._state.result is result))
+        if outcome.start is not None:
+            start = outcome.start
+            self._after.append(lambda: self._requests.put(start))
+        if outcome.command is not None:
+            self._carry_out(outcome.command)
+
+    def _carry_out(self, command: Command) -> None:
+        """What the line can do itself; the rest is for the cycle."""
+        if command.code is CommandCode.RESET_COUNTERS:
+            self._counts = dict.fromkeys(self._counts, 0)
+        elif command.code is CommandCode.TIME_SYNC:
+            plc_s = number(self._command, "PLC_TIME")
+            log.info("PLC time is %+.1f s from the station's", plc_s - time.time())
+        else:
+            self._after.append(lambda: self._requests.put(command))
+            return
+        self._done = (command.number, True)
+        self._after.append(self._poke)
+
+    def _count(self, after: State) -> None:
+        if after.phase is Phase.SHOWN and self._state.phase is Phase.BUSY and after.result is not None:
+            shown = after.result.verdict
+            if shown in self._counts:
+                self._counts[shown] += 1
+
+    def _values(self, now_s: float) -> dict[str, Value]:
+        counts = (self._counts[VerdictCode.OK], self._counts[VerdictCode.NOK], self._counts[VerdictCode.ERROR])
+        return status_window.values(self._state, self._health, now_s, counts)
+
+    def _link_lost(self, error: LineError, now_s: float) -> None:
+        if self._lost_s is None:
+            log.warning("PLC: %s", error)
+            self._lost_s = now_s

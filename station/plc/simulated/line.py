@@ -1,0 +1,233 @@
+"""A line PLC that runs the generated function block against any station, over Modbus TCP in either direction, with failures on demand."""
+
+import asyncio
+import random
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeVar
+
+from station.errors import LineError
+from station.plc.block.definition import NO_RESULT, NOT_READY, REFUSALS
+from station.plc.block.transcribe import Block
+from station.plc.modbus import ModbusClient
+from station.plc.registers import (
+    BY_NAME,
+    COMMAND_START,
+    COMMAND_WORDS,
+    STATUS_START,
+    STATUS_WORDS,
+    CommandCode,
+    Control,
+    Flags,
+    Status,
+    Value,
+    VerdictCode,
+    number,
+    pack,
+    unpack_window,
+)
+from station.plc.simulated.windows import RemoteWindows, Windows
+
+Outcome = TypeVar("Outcome")
+
+POLL_S = 0.004
+SILENCE_S = (0.05, 0.8)
+
+
+class Knob(StrEnum):
+    """What may go wrong on the PLC's side."""
+
+    EARLY_DROP = "early trigger drop"
+    STUCK_ACK = "stuck ack"
+    ID_REUSE = "id reuse"
+    WORD_ORDER = "wrong word order"
+    TORN_READS = "torn reads"
+    SILENCE = "silence"
+    STORM = "reconnect storm"
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What the PLC made of one part."""
+
+    accepted: bool
+    """The part flag is OK: all points of the rule held in one read."""
+    verdict: VerdictCode
+    refused_by: str | None
+    """The first point of the rule that did not hold."""
+    trigger_to_valid_ms: float | None
+    """None if no result came within the window."""
+    inspection_id: int
+    reason: int
+    handshake_complete: bool
+    """Trigger acknowledged, result read and acknowledged, and RESULT_VALID seen to fall."""
+    flags: Flags
+    trigger_id: int
+
+
+class SimulatedLine:
+    """Drives one station part by part. `accept_simulated`: the demo line takes verdicts of an emulated camera."""
+
+    def __init__(self, windows: Windows, accept_simulated: bool, recipe: int = 1, seed: int = 0) -> None:
+        self._windows = windows
+        self._block = Block()
+        self._v = self._block.v
+        self._v.AcceptSimulated, self._v.Recipe = accept_simulated, recipe
+        self._rng = random.Random(seed)
+        self._connected = False
+        self._crc_known = False
+        self._written: list[int] | None = None
+        self._extra = Control(0)
+        self._knobs: frozenset[Knob] = frozenset()
+
+    @staticmethod
+    def at(host: str, port: int, accept_simulated: bool, seed: int = 0) -> "SimulatedLine":
+        """A line whose PLC is the client of a station."""
+        return SimulatedLine(RemoteWindows(lambda: ModbusClient(host, port)), accept_simulated, seed=seed)
+
+    async def connect(self, timeout_s: float = 30.0) -> None:
+        """Connect, waiting for a station that is still starting. Raises LineError."""
+        until = time.monotonic() + timeout_s
+        while True:
+            try:
+                await self._windows.connect()
+                break
+            except LineError:
+                if time.monotonic() > until:
+                    raise
+                await asyncio.sleep(0.2)
+        self._connected = True
+
+    async def close(self) -> None:
+        """Drop the connection."""
+        await self._windows.close()
+
+    async def meanwhile(self, work: Awaitable[Outcome]) -> Outcome:
+        """Keep the heartbeat going until `work` is done."""
+        task = asyncio.ensure_future(work)
+        while not task.done():
+            if self._connected:
+                await self._cycle()
+            await asyncio.wait((task,), timeout=0.02)
+        return task.result()
+
+    async def wait_ready(self, timeout_s: float) -> bool:
+        """Hold ENABLE and the heartbeat until READY; False after the time."""
+        return await self._until(lambda: bool(self._v.Window[0] & Status.READY) and number(self.status(), "MAP_VERSION") > 0, timeout_s)
+
+    async def command(self, code: CommandCode | int, arg: int = 0, timeout_s: float = 30.0) -> int | None:
+        """Have a command carried out; its echo, None if none came."""
+        self._v.Command[3], self._v.Command[4] = int(code), arg
+        self._extra = Control.EXEC_COMMAND
+        done = await self._until(lambda: bool(self._v.Window[0] & Status.CMD_DONE), timeout_s)
+        echo = number(self.status(), "CMD_ECHO") if done else None
+        self._extra = Control(0)
+        await self._until(lambda: not self._v.Window[0] & Status.CMD_DONE, 2.0)
+        return echo
+
+    def status(self) -> dict[str, Value]:
+        """The status window as read last."""
+        return unpack_window(STATUS_START, self._v.Window)
+
+    async def inspect(self, serial: str, window_s: float = 4.0, golden: bool = False, knobs: frozenset[Knob] = frozenset()) -> Answer:
+        """One part: trigger, wait for the result inside the window, apply the rule, acknowledge."""
+        v = self._v
+        v.Serial, v.Golden, v.WindowTime = pack(BY_NAME["PART_SERIAL"], serial), golden, window_s
+        if not self._crc_known and await self.wait_ready(window_s):
+            v.Crc, self._crc_known = number(self.status(), "CONFIG_CRC"), True
+        self._knobs = knobs
+        if Knob.ID_REUSE in knobs:
+            v.TriggerId = (v.TriggerId - 1) % 0xFFFF
+        v.Start, seen, triggered_s, valid_s, quiet = True, None, None, None, Knob.SILENCE not in knobs
+        silent_in = self._rng.choice((10, 30, 40, 50))
+        until = time.monotonic() + 2 * window_s
+        while time.monotonic() < until:
+            await self._cycle()
+            v.Start = False
+            if v.State == 30 and triggered_s is None:
+                triggered_s = time.monotonic()
+            if v.State == 50 and valid_s is None:
+                valid_s, seen = time.monotonic(), self.status()
+                if Knob.STORM in knobs:
+                    await self._weather()
+            if not quiet and v.State == silent_in:
+                quiet = True
+                await asyncio.sleep(self._rng.uniform(*SILENCE_S))
+            if v.PartDone and v.State == 0:
+                break
+            await asyncio.sleep(POLL_S)
+        self._knobs = frozenset()
+        return self._answer(seen, None if triggered_s is None or valid_s is None else (valid_s - triggered_s) * 1000)
+
+    def _answer(self, seen: dict[str, Value] | None, took_ms: float | None) -> Answer:
+        v = self._v
+        refused = REFUSALS[v.Refusal] or None
+        values = seen or {"VERDICT": 0, "INSPECTION_ID": 0, "REASON": 0, "FLAGS": 0}
+        code = number(values, "VERDICT")
+        return Answer(
+            v.PartOk,
+            VerdictCode(code) if code in list(VerdictCode) else VerdictCode.NONE,
+            refused,
+            took_ms,
+            number(values, "INSPECTION_ID"),
+            number(values, "REASON"),
+            seen is not None and v.Refusal not in (NOT_READY, NO_RESULT) and not v.Window[0] & Status.RESULT_VALID,
+            Flags(number(values, "FLAGS") & 7),
+            v.TriggerId,
+        )
+
+    async def _until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
+        until = time.monotonic() + timeout_s
+        while time.monotonic() < until:
+            await self._cycle()
+            if self._v.Fresh and condition():
+                return True
+            await asyncio.sleep(POLL_S)
+        return False
+
+    async def _weather(self) -> None:
+        try:
+            await self._windows.storm()
+        except LineError:
+            self._connected = False
+
+    async def _cycle(self) -> None:
+        """One cycle of the PLC: read, run the block, write what changed."""
+        v = self._v
+        try:
+            if not self._connected:
+                await self._windows.connect()
+                self._connected, self._written = True, None
+            v.Window, v.Fresh = await self._read(), True
+        except LineError:
+            v.Fresh, self._connected = False, False
+        self._block.cycle(time.monotonic())
+        words = [v.Command[0] | self._extra, *v.Command[1:]]
+        try:
+            if self._connected and words != self._written:
+                await self._write(words)
+                self._written = words
+        except LineError:
+            self._connected = False
+
+    async def _read(self) -> list[int]:
+        if Knob.TORN_READS in self._knobs:
+            words = []
+            for address in range(STATUS_START, STATUS_START + STATUS_WORDS):
+                words += await self._windows.read(address, 1)
+                await asyncio.sleep(0)
+            return words
+        words = await self._windows.read(STATUS_START, STATUS_WORDS)
+        if Knob.WORD_ORDER in self._knobs:
+            return [(w >> 8) | (w & 0xFF) << 8 for w in words]
+        return words
+
+    async def _write(self, words: list[int]) -> None:
+        held = self._written
+        if Knob.STUCK_ACK in self._knobs and held is not None and held[0] & Control.RESULT_ACK and not words[0] & Control.RESULT_ACK:
+            await asyncio.sleep(self._rng.uniform(*SILENCE_S))
+        await self._windows.write(COMMAND_START, words[:COMMAND_WORDS])
+        if Knob.EARLY_DROP in self._knobs and words[0] & Control.TRIGGER:
+            await self._windows.write(COMMAND_START, [words[0] & ~Control.TRIGGER])

@@ -1,0 +1,27 @@
+"""A stored frame judged again and again: the proof that the inspection still works, made while no part is there."""
+
+from pathlib import Path
+
+from station.domain import Inspection, Verdict
+from station.errors import ModelError
+from station.imagefile import read_image
+from station.inspection import Inspector
+
+
+class SelfTest:
+    """The frame, and what was found in it when the station started."""
+
+    def __init__(self, inspector: Inspector, path: Path) -> None:
+        """Raises ImageError; ModelError if the frame cannot be judged."""
+        self._inspector, self._image = inspector, read_image(path)
+        self._expected = inspector.inspect(self._image)
+        if self._expected.verdict is Verdict.ERROR:
+            raise ModelError(f"{path}: the self-test frame cannot be judged ({self._expected.reason}); name a frame of this weld")
+
+    def passes(self) -> bool:
+        """Whether the same is found again, to the bit."""
+        return _found(self._inspector.inspect(self._image)) == _found(self._expected)
+
+
+def _found(inspection: Inspection) -> tuple[object, ...]:
+    return inspection.verdict, inspection.ring, inspection.scores, inspection.findings

@@ -1,0 +1,82 @@
+"""What the station watches of itself: drifting pictures, masters judged wrongly, a stored frame judged differently."""
+
+import logging
+import time
+from collections.abc import Mapping
+
+import numpy as np
+
+from station.classify.drift import Drift, DriftWatch
+from station.domain import Inspection, Verdict
+from station.recipe import Loaded
+
+log = logging.getLogger("weldgate.watch")
+
+AGAIN_S = 1.0
+"""Between two self-tests while they fail."""
+
+
+class Watch:
+    """Hears of every part; tells what the PLC must know beside the verdicts."""
+
+    def __init__(self, loaded: Loaded, masters: Mapping[str, Verdict], self_test_s: float) -> None:
+        """`masters`: serial and true verdict of each golden part; `self_test_s`: idle time between two self-tests."""
+        self._masters, self._self_test_s = masters, self_test_s
+        self._wrong: set[str] = set()
+        self.use(loaded)
+
+    def use(self, loaded: Loaded) -> None:
+        """Another recipe is in use."""
+        reference = loaded.inspector.reference
+        self._drift_watch = None if reference is None else DriftWatch(reference)
+        self.drift: Drift | None = None
+        """As of the last judged part; None if it is not watched."""
+        self._self_test = loaded.self_test
+        self.self_test_failed = False
+        self._tested_s = time.monotonic()
+
+    @property
+    def drifting(self) -> bool:
+        """Whether the pictures have changed."""
+        return self.drift is not None and self.drift.alarm
+
+    @property
+    def master_wrong(self) -> bool:
+        """Whether a master was judged wrongly and not yet right again."""
+        return bool(self._wrong)
+
+    def part(self, inspection: Inspection) -> None:
+        """A part was judged."""
+        self._tested_s = time.monotonic()
+        if self._drift_watch is None or not inspection.look:
+            return
+        before, self.drift = self.drifting, self._drift_watch.part(np.array(inspection.look))
+        if self.drifting and not before:
+            log.warning("the pictures drift (%.2f, limit %.2f); check light, focus and surface", self.drift.value, self.drift.limit)
+        elif before and not self.drifting:
+            log.info("the pictures are as they were (%.2f)", self.drift.value)
+
+    def master(self, serial: str, found: Verdict) -> None:
+        """A master was judged."""
+        expected = self._masters.get(serial)
+        if expected is None:
+            log.warning("golden check: serial %r is no master; name it under golden.masters", serial)
+        elif found is expected:
+            self._wrong.discard(serial)
+            log.info("golden check: master %s judged %s, right", serial, found)
+        else:
+            self._wrong.add(serial)
+            log.error("golden check: master %s judged %s, must be %s; no verdict counts until it is right", serial, found, expected)
+
+    def idle(self) -> None:
+        """No part is there: judge the stored frame if it is time."""
+        wait_s = AGAIN_S if self.self_test_failed else self._self_test_s
+        if self._self_test is None or time.monotonic() - self._tested_s < wait_s:
+            return
+        failed = not self._self_test.passes()
+        self._tested_s = time.monotonic()
+        if failed and not self.self_test_failed:
+            log.error("self-test failed: the stored frame is judged differently; restart the station, check the PC's memory")
+        elif self.self_test_failed and not failed:
+            log.info("self-test passed again")
+        self.self_test_failed = failed

@@ -1,0 +1,127 @@
+"""Malformed, truncated, oversized and random frames by the hundred thousand: the station goes on, and no register shows a verdict."""
+
+import random
+import socket
+import struct
+import threading
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from deploy.demo import free_ports
+from station.plc.framing import frames
+from station.plc.line import ModbusLine, make_line
+from station.plc.port import Health
+from station.plc.registers import STATUS_WORDS, Offline
+from station.settings import PlcSettings
+
+FRAMED, NOISE = 92_000, 8_000
+BATCH = 10
+
+
+@pytest.fixture
+def line() -> Iterator[ModbusLine]:
+    kept = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
+    kept.start()
+    kept.checked_in(Health(True, Offline.NONE, False, 7))
+    yield kept
+    kept.stop()
+
+
+@given(st.lists(st.tuples(st.integers(0, 65535), st.binary(min_size=2, max_size=254)), max_size=6), st.integers(0, 1500))
+def test_frames_come_out_as_they_went_in_wherever_the_stream_is_cut(requests: list[tuple[int, bytes]], cut: int) -> None:
+    sent = [struct.pack(">HHH", number, 0, len(body)) + body for number, body in requests]
+    stream = b"".join(sent)
+    first, used, problem = frames(stream[:cut])
+    second, end, other = frames(stream[used:])
+    assert (problem, other) == (None, None)
+    assert first + second == sent
+    assert used + end == len(stream)
+
+
+def request(rng: random.Random) -> bytes:
+    """A frame that a peer may send; none writes into CONTROL, so that no part can start."""
+    functions = (1, 2, 3, 4, 7, 8, 11, 12, 17, 20, 21, 24, 43, 99, 127)
+    body = bytes([rng.choice((0, 1, 255)), rng.choice(functions)]) + rng.randbytes(rng.randrange(0, 14))
+    if rng.random() < 0.4:  # a write into the status window, and beyond
+        body = struct.pack(">BBHH", 1, rng.choice((5, 6)), rng.randrange(1600, 65536), rng.choice((0, 0xFF00, rng.randrange(65536))))
+    return struct.pack(">HHH", rng.randrange(65536), 0, len(body)) + body
+
+
+def noise(rng: random.Random) -> bytes:
+    """Not even a frame."""
+    kind = rng.randrange(3)
+    if kind == 0:
+        return rng.randbytes(rng.randrange(1, 400))
+    if kind == 1:
+        return request(rng)[: rng.randrange(1, 8)]
+    return struct.pack(">HHHB", 1, 0, rng.choice((0, 1, 255, 65535)), 1) + rng.randbytes(rng.randrange(0, 300))
+
+
+def status_window(peer: socket.socket) -> list[int]:
+    peer.sendall(struct.pack(">HHHBBHH", 9, 0, 6, 1, 3, 100, STATUS_WORDS))
+    answer = b""
+    while len(answer) < 9 + 2 * STATUS_WORDS:
+        more = peer.recv(4096)
+        assert more, "the server closed a well-behaved peer"
+        answer += more
+    return list(struct.unpack(f">{STATUS_WORDS}H", answer[9:]))
+
+
+def ask(port: int, seed: int, requests: int) -> int:
+    """Send requests in batches on one connection; how many were answered."""
+    rng, answered = random.Random(seed), 0
+    with socket.create_connection(("127.0.0.1", port), timeout=5) as peer:
+        stream = peer.makefile("rb")
+        for _ in range(requests // BATCH):
+            peer.sendall(b"".join(request(rng) for _ in range(BATCH)))
+            for _ in range(BATCH):
+                length = struct.unpack(">HHH", stream.read(6))[2]
+                assert len(stream.read(length)) == length
+                answered += 1
+        stream.close()
+    return answered
+
+
+def shout(port: int, seed: int, times: int) -> None:
+    rng = random.Random(seed)
+    for _ in range(times):
+        with socket.create_connection(("127.0.0.1", port), timeout=5) as peer:
+            peer.sendall(noise(rng))
+
+
+def test_a_hundred_thousand_frames_of_noise_change_nothing(line: ModbusLine) -> None:
+    answered: list[int] = []
+    shouting = [threading.Thread(target=lambda seed=seed: answered.append(ask(line.port, seed, FRAMED // 2))) for seed in (1, 2)]  # type: ignore[misc]
+    shouting.append(threading.Thread(target=shout, args=(line.port, 3, NOISE)))
+    for thread in shouting:
+        thread.start()
+    seen = 0
+    with socket.create_connection(("127.0.0.1", line.port), timeout=5) as plc:
+        while any(thread.is_alive() for thread in shouting):
+            words = status_window(plc)
+            assert words[5:7] == [0, 0xFFFF]
+            assert words[0] & 0b11100000 == 0
+            line.checked_in(Health(True, Offline.NONE, False, 7))
+            seen += 1
+        for thread in shouting:
+            thread.join()
+        assert answered == [FRAMED // 2] * 2, "every well framed request has its answer"
+        assert seen > 3
+        before = status_window(plc)[1]
+        assert line.next_request(0.15) is None
+        assert status_window(plc)[1] != before, "the heartbeat goes on"
+
+
+def test_a_peer_that_speaks_no_modbus_is_told_in_the_log(line: ModbusLine, caplog: pytest.LogCaptureFixture) -> None:
+    with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
+        peer.sendall(b"GET / HTTP/1.0\r\n\r\n")
+        assert peer.recv(10) == b""
+    assert "does not speak Modbus" in caplog.text
+    with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
+        peer.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 3, 100, 1) * 200)
+        while peer.recv(4096):
+            pass
+    assert "without waiting for answers" in caplog.text

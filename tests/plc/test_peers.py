@@ -1,0 +1,101 @@
+"""Peers that nobody here wrote: mbpoll and libmodbus."""
+
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from deploy.demo import free_ports
+from deploy.judge import Judge
+from station.plc.line import ModbusLine, make_line
+from station.plc.port import Health, Result, Trigger
+from station.plc.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Flags, Offline, VerdictCode
+from station.settings import PlcSettings
+
+HERE = Path(__file__).resolve().parent
+
+
+@pytest.fixture
+def line() -> Iterator[ModbusLine]:
+    kept = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0, writer_idle_ms=100))
+    kept.start()
+    kept.checked_in(Health(True, Offline.NONE, False, 7))
+    yield kept
+    kept.stop()
+
+
+def mbpoll(line: ModbusLine, *arguments: str) -> tuple[int, str]:
+    assert shutil.which("mbpoll"), "deploy/system.sh test installs mbpoll"
+    done = subprocess.run(
+        ["mbpoll", "-1", "-p", str(line.port), *arguments],
+        capture_output=True,
+        text=True,
+        timeout=20,
+        check=False,
+        stdin=subprocess.DEVNULL,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def values(text: str) -> dict[int, int]:
+    """References and words of a `:hex` answer."""
+    return {int(at): int(word, 16) for at, word in re.findall(r"\[(\d+)\]:\s+0x([0-9A-F]+)", text)}
+
+
+@pytest.mark.parametrize(("first", "zero_based"), [(0, True), (1, False)])
+@pytest.mark.parametrize("table", ["3", "4"])
+def test_mbpoll_reads_every_register_in_both_address_styles(first: int, zero_based: bool, table: str, line: ModbusLine) -> None:
+    options = ["-t", f"{table}:hex", "-a", "1", *(["-0"] if zero_based else [])]
+    code, said = mbpoll(line, *options, "-r", str(STATUS_START + first), "-c", str(STATUS_WORDS), "127.0.0.1")
+    assert code == 0, said
+    read = values(said)
+    assert sorted(read) == list(range(STATUS_START + first, STATUS_START + first + STATUS_WORDS))
+    assert [read[168 + first + i] for i in range(4)] == [0x1234, 0x5678, 0x42F6, 0xE979]
+    code, said = mbpoll(line, *options, "-r", str(first), "-c", str(COMMAND_WORDS), "127.0.0.1")
+    assert sorted(values(said)) == list(range(first, first + COMMAND_WORDS))
+
+
+@pytest.mark.parametrize("register", [r for r in MAP if r.address < COMMAND_WORDS], ids=lambda r: r.name)
+def test_mbpoll_writes_every_command_register(register: object, line: ModbusLine) -> None:
+    address, words = register.address, register.words  # type: ignore[attr-defined]
+    for first, style in ((0, ["-0"]), (1, [])):
+        sent = [str(16 + first + i) for i in range(words)]
+        code, said = mbpoll(line, "-t", "4", *style, "-r", str(address + first), "127.0.0.1", *sent)
+        assert code == 0, said
+        _, said = mbpoll(line, "-t", "4:hex", *style, "-r", str(address + first), "-c", str(words), "127.0.0.1")
+        assert [str(word) for _, word in sorted(values(said).items())] == sent
+
+
+@pytest.mark.parametrize("unit", ["0", "1", "255"])
+def test_mbpoll_reads_bits_at_every_unit(unit: str, line: ModbusLine) -> None:
+    for table in ("0", "1"):
+        code, said = mbpoll(line, "-t", table, "-a", unit, "-0", "-r", str(STATUS_START * 16), "-c", "16", "127.0.0.1")
+        assert code == 0, said
+        assert len(re.findall(r"\[\d+\]:\s+[01]", said)) == 16
+
+
+def test_mbpoll_is_refused_where_only_the_station_writes(line: ModbusLine) -> None:
+    for register in MAP:
+        if register.address >= STATUS_START:
+            code, said = mbpoll(line, "-t", "4", "-0", "-r", str(register.address), "127.0.0.1", "1")
+            assert code != 0
+            assert "Illegal data address" in said
+
+
+def test_a_libmodbus_plc_does_the_whole_handshake_a_thousand_times(line: ModbusLine, tmp_path: Path) -> None:
+    build = ["gcc", "-O1", "-Wall", "-Werror", "-I/usr/include/modbus", str(HERE / "peer.c"), "-o", str(tmp_path / "peer"), "-lmodbus"]
+    subprocess.run(build, check=True, timeout=60)
+    seen: list[int] = []
+
+    def decide(trigger: Trigger) -> Result:
+        seen.append(trigger.trigger_id)
+        verdict = VerdictCode.OK if trigger.trigger_id % 3 else VerdictCode.NOK
+        return Result(trigger, verdict, trigger.number, 0, 0, (9,) * 21, 0, 0, Flags(0))
+
+    with Judge(line, decide):
+        done = subprocess.run([tmp_path / "peer", str(line.port), "1000"], capture_output=True, text=True, timeout=100, check=False)
+    assert done.stdout.split() == ["1000", "667", "333", "0"], done.stdout + done.stderr
+    assert seen == list(range(1, 1001))
