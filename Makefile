@@ -4,10 +4,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
-.PHONY: help setup demo test lint bench clean
+.PHONY: help setup demo test lint bench chaos-plc clean
 
 help: ## what can be made
-	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
 
 setup: $(VENV)/.dev ## everything, into .venv
 
@@ -25,8 +25,12 @@ lint: $(VENV)/.dev ## ruff, mypy, import contracts
 
 bench: $(VENV)/.dev ## times of each step on the emulated camera, of the generator and of the classifier
 	$(BIN)/python -m deploy.bench
+	$(BIN)/python -m deploy.bench_plc
 	$(BIN)/python -m deploy.bench_render
 	$(BIN)/python -m models.bench
+
+chaos-plc: $(VENV)/.demo ## 10,000 parts in each PLC mode with both sides misbehaving
+	$(BIN)/python -m deploy.chaos_plc
 
 clean: ## remove the virtual environment
 	rm -rf $(VENV)
@@ -40,6 +44,7 @@ $(VENV)/.demo: $(VENV)/.system pyproject.toml constraints.txt
 	$(PIP) -e '.[synth]'
 	touch $@
 
-$(VENV)/.dev: $(VENV)/.demo pyproject.toml constraints.txt
-	$(PIP) -e '.[synth,train,dev]'
+$(VENV)/.dev: $(VENV)/.demo pyproject.toml constraints.txt deploy/system.sh
+	deploy/system.sh test
+	$(PIP) -e '.[synth,train,tls,dev]'
 	touch $@
