@@ -9,7 +9,7 @@ from station.classify.drift import DriftWatch, Reference
 Array = NDArray[np.float64]
 
 MIN_PARTS = 20
-RUNS, RUN_PARTS = 200, 60
+RUNS, RUN_PARTS = 200, 100
 FALSE_ALARM = 0.01
 """Share of the runs without drift that go above the limit, before the margin."""
 MARGIN = 1.3

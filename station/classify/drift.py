@@ -14,8 +14,8 @@ from station.errors import ModelError
 
 Array = NDArray[np.float64]
 
-WEIGHT = 0.2
-"""Of the newest part; the part before it has 0.8 times as much, and so on: about the last nine parts count."""
+WEIGHT = 0.1
+"""Of the newest part; the part before it has 0.9 times as much, and so on: about the last twenty parts count."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,7 +80,7 @@ def test_the_drift_of_one_part_from_its_own_look_is_told(lot: Path, inspector: I
     entries = json.loads((lot / "labels.json").read_text())["frames"]
     (lot / "labels.json").unlink()
     (lot / "labels.json").write_text(json.dumps({"frames": entries[:1]}))
-    reference = Reference(file_hash, 20, tuple(look.tolist()), (0.1,) * LOOK, 0.5)
+    reference = Reference(file_hash, 20, tuple(look.tolist()), (0.1,) * LOOK, 0.02)
     steps = drift(lot, inspector.classifier, reference)
     assert all(s.alarms == 0 for s in steps if s.strength == 0)
     assert all(s.alarms == 1 for s in steps if s.strength == 1)

@@ -126,7 +126,7 @@ def test_a_plc_that_takes_no_simulated_pictures_passes_nothing(station: Station,
     assert answer.refused_by == "picture of an emulated camera"
 
 
-@pytest.mark.parametrize(("settings", "parts_until_alarm"), [(15.0, 3), (1e6, None)], indirect=["settings"])
+@pytest.mark.parametrize(("settings", "parts_until_alarm"), [(4.5, 3), (1e6, None)], indirect=["settings"])
 def test_drifting_pictures_are_told_to_plc_and_window_and_still_judged(
     station: Station, parts_until_alarm: int | None, frames: dict[str, Image]
 ) -> None:
