@@ -28,7 +28,7 @@ from station.plc.registers import (
     unpack_window,
 )
 from station.plc.tls import client_context, server_context
-from station.plc.wire import ClientWire, ServerWire, Wire
+from station.plc.wire import WAITING, ClientWire, ServerWire, Wire
 from station.settings import PlcSettings
 
 log = logging.getLogger("weldgate.line")
@@ -78,6 +78,7 @@ class ModbusLine:
         self._after: list[Callable[[], None]] = []
         """To do once the PLC can read what was stepped."""
         self._lost_s: float | None = None
+        self._lost_said = ""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._wake: asyncio.Event | None = None
@@ -263,5 +264,7 @@ class ModbusLine:
 
     def _link_lost(self, error: LineError, now_s: float) -> None:
         if self._lost_s is None:
+            self._lost_s, self._lost_said = now_s, ""
+        if str(error) not in (WAITING, self._lost_said):
+            self._lost_said = str(error)
             log.warning("PLC: %s", error)
-            self._lost_s = now_s

@@ -14,6 +14,7 @@ SHOWS = int(Status.RESULT_VALID | Status.OK | Status.NOK)
 HEAD = BY_NAME["SEQ_HEAD"].address - STATUS_START
 AGE = BY_NAME["RESULT_AGE_10MS"].address - STATUS_START
 RETRY_S = 0.5
+WAITING = "waiting to connect again"
 
 
 class Wire(Protocol):
@@ -155,7 +156,7 @@ class ClientWire:
     async def _connect(self) -> None:
         now = time.monotonic()
         if now - self._tried_s < RETRY_S:
-            raise LineError("waiting to connect again")
+            raise LineError(WAITING)
         self._tried_s = now
         await self._client.connect()
         try:

@@ -1,0 +1,178 @@
+"""The station as client of a PLC that is mute, drops the link, takes half of a write, or has its windows elsewhere."""
+
+import asyncio
+import socket
+import threading
+import time
+from contextlib import suppress
+
+import pytest
+
+from deploy.demo import free_ports
+from deploy.judge import WELL, Judge
+from station.plc.line import make_line
+from station.plc.port import Result, Trigger
+from station.plc.registers import Flags, Offline, VerdictCode
+from station.plc.simulated.line import Answer, SimulatedLine
+from station.plc.simulated.windows import OwnWindows
+from station.settings import PlcSettings
+
+
+def ok(trigger: Trigger) -> Result:
+    return Result(trigger, VerdictCode.OK, trigger.number, 0, 0, (5,) * 21, 0, 0, Flags(0))
+
+
+class Proxy:
+    """Between station and PLC: forwards, and at the n-th write does what it was told, once."""
+
+    def __init__(self, plc_port: int, at_write: int, forward: bool) -> None:
+        """`forward`: the PLC gets that write, the station no answer; else nobody gets anything."""
+        self._plc_port, self._at, self._forward = plc_port, at_write, forward
+        self._writes = 0
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listener.getsockname()[1]
+        self._open: list[socket.socket] = []
+        self._thread = threading.Thread(target=self._accept)
+        self._thread.start()
+
+    def close(self) -> None:
+        self._listener.shutdown(socket.SHUT_RDWR)
+        self._listener.close()
+        self._thread.join(timeout=5)
+
+    def _accept(self) -> None:
+        with suppress(OSError):
+            while True:
+                station, _ = self._listener.accept()
+                self._serve(station)
+
+    def _serve(self, station: socket.socket) -> None:
+        with station, suppress(OSError):
+            plc = socket.create_connection(("127.0.0.1", self._plc_port), timeout=2)
+            with plc:
+                station.settimeout(2)
+                while request := station.recv(4096):
+                    if request[7] == 16:
+                        self._writes += 1
+                    cut = self._writes == self._at and request[7] == 16
+                    if cut and not self._forward:
+                        return
+                    plc.sendall(request)
+                    answer = plc.recv(4096)
+                    if cut:
+                        return
+                    station.sendall(answer)
+
+
+@pytest.fixture
+def ports() -> int:
+    return free_ports(1)[0]
+
+
+@pytest.mark.parametrize("forward", [True, False])
+@pytest.mark.parametrize("at_write", [3, 5, 6, 7, 8, 9, 10, 12])
+def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(at_write: int, forward: bool, ports: int) -> None:
+    """NOK and OK in turns: whatever is cut, an OK is only ever that of its own part, and the parts after it pass."""
+    windows = OwnWindows("127.0.0.1", ports)
+    proxy = Proxy(ports, at_write, forward)
+    settings = PlcSettings(mode="client", port=proxy.port, poll_ms=5, timeout_ms=200, deadline_ms=1500)
+    line = make_line(settings)
+
+    def decide(trigger: Trigger) -> Result:
+        verdict = VerdictCode.NOK if trigger.serial.startswith("BAD") else VerdictCode.OK
+        return Result(trigger, verdict, trigger.number, 0, 0, (5,) * 21, 0, 0, Flags(0))
+
+    async def conversation() -> list[Answer]:
+        plc = SimulatedLine(windows, accept_simulated=False)
+        await plc.connect(5)
+        line.start()
+        try:
+            return [await plc.inspect(serial, 3.0) for serial in ("GOOD-1", "BAD-2", "GOOD-3", "GOOD-4")]
+        finally:
+            await plc.close()
+
+    try:
+        with Judge(LateStart(line), decide):  # type: ignore[arg-type]
+            answers = asyncio.run(conversation())
+    finally:
+        line.stop()
+        proxy.close()
+    assert not answers[1].accepted
+    assert [a.accepted for a in (answers[0], answers[2], answers[3])].count(True) >= 2, answers
+    assert answers[3].accepted
+
+
+class LateStart:
+    """A line that is not asked before it runs."""
+
+    def __init__(self, line: object) -> None:
+        self._line = line
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self._line, name)
+
+    def checked_in(self, health: object) -> None:
+        if self._line._loop is None:  # type: ignore[attr-defined]
+            time.sleep(0.01)
+        else:
+            self._line.checked_in(health)  # type: ignore[attr-defined]
+
+
+def test_a_mute_plc_is_told_and_nothing_blocks(ports: int, caplog: pytest.LogCaptureFixture) -> None:
+    with socket.create_server(("127.0.0.1", ports)):
+        line = make_line(PlcSettings(mode="client", port=ports, timeout_ms=100, plc_heartbeat_ms=300))
+        line.start()
+        try:
+            until = time.monotonic() + 10
+            while line.status()["OFFLINE_REASON"] != Offline.PLC_SILENT and time.monotonic() < until:
+                start = time.monotonic()
+                line.checked_in(WELL)
+                assert line.next_request(0.01) is None
+                assert time.monotonic() - start < 0.1
+            assert line.status()["OFFLINE_REASON"] == Offline.PLC_SILENT
+        finally:
+            line.stop()
+    assert "No response" in caplog.text
+
+
+def test_a_plc_that_is_not_there_is_waited_for(ports: int) -> None:
+    line = make_line(PlcSettings(mode="client", port=ports, poll_ms=5, timeout_ms=200))
+    line.start()
+
+    async def conversation() -> Answer:
+        await asyncio.sleep(0.7)
+        plc = SimulatedLine(OwnWindows("127.0.0.1", ports), accept_simulated=False)
+        await plc.connect(5)
+        try:
+            return await plc.inspect("LATE", 4.0)
+        finally:
+            await plc.close()
+
+    try:
+        with Judge(line, ok):
+            assert asyncio.run(conversation()).accepted
+    finally:
+        line.stop()
+
+
+def test_a_wrong_base_address_is_said_with_its_register(ports: int, caplog: pytest.LogCaptureFixture) -> None:
+    line = make_line(PlcSettings(mode="client", port=ports, poll_ms=5, timeout_ms=200, status_base=4000, plc_heartbeat_ms=300))
+
+    async def conversation() -> int:
+        windows = OwnWindows("127.0.0.1", ports)
+        await windows.connect()
+        line.start()
+        await asyncio.sleep(1.2)
+        words = await windows.read(100, 76)
+        await asyncio.to_thread(line.stop)
+        await windows.close()
+        return sum(words)
+
+    assert asyncio.run(conversation()) == 0
+    assert "4000 refused" in caplog.text
+    assert line.status()["OFFLINE_REASON"] == Offline.PLC_SILENT
+
+
+def test_windows_that_overlap_are_refused() -> None:
+    with pytest.raises(ValueError, match="overlap"):
+        PlcSettings(mode="client", command_base=90, status_base=100)
