@@ -67,9 +67,9 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="weldgate-")))
         feed = Feed(folder / "feed", SERIAL)
-        plc_port, events_port, preview_port = free_ports(3)
+        ports = free_ports(4)
         settings = folder / "station.toml"
-        settings.write_text(_settings(records, plc_port, events_port, preview_port))
+        settings.write_text(_settings(records, *ports))
         log = stack.enter_context((folder / "engine.log").open("w"))
         fresh = max(0, arguments.parts - len(shipped_parts()))
         renderer = stack.enter_context(_renderer(folder / "fresh", fresh, arguments.seed)) if fresh else None
@@ -85,7 +85,7 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
                 console.print(f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]")
         stopping = threading.Event()
         parts = _parts(arguments.parts, folder / "fresh", renderer, console, stopping)
-        judged = asyncio.run(_drive(plc_port, feed, parts, stopping, engine, folder / "engine.log", pace_s, console))
+        judged = asyncio.run(_drive(ports[0], feed, parts, stopping, engine, folder / "engine.log", pace_s, console))
     summarise(judged, records, console)
     if arguments.json is not None:
         write_json(arguments.json, judged, records)
@@ -111,7 +111,7 @@ def _has_display() -> bool:
     return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def _settings(records: Path, plc_port: int, events_port: int, preview_port: int) -> str:
+def _settings(records: Path, plc_port: int, events_port: int, preview_port: int, requests_port: int) -> str:
     shipped = HERE.parent / "models" / "shipped"
     return f"""
 [camera]
@@ -128,6 +128,7 @@ folder = {json.dumps(str(records))}
 [channel]
 events_port = {events_port}
 preview_port = {preview_port}
+requests_port = {requests_port}
 """
 
 

@@ -1,6 +1,6 @@
 """What the PLC is told of a record; pure."""
 
-from station.domain import Origin, Verdict
+from station.domain import Origin, Purpose, Verdict
 from station.plc.handshake import ALL_SEGMENTS
 from station.plc.port import Result, Trigger
 from station.plc.registers import REASON_CODES, Flags, VerdictCode
@@ -13,7 +13,7 @@ def verdict_code(record: Record) -> VerdictCode:
     """A replayed part or a master never releases anything."""
     if record.verdict is Verdict.ERROR:
         return VerdictCode.ERROR
-    if record.golden or record.origin is Origin.REPLAY:
+    if record.purpose is not Purpose.PART or record.origin is Origin.REPLAY:
         return VerdictCode.TEST
     return VerdictCode.OK if record.verdict is Verdict.OK else VerdictCode.NOK
 

@@ -139,7 +139,7 @@ class Archive:
             frame_sha256=sha256,
             inspection=inspection,
             provenance=provenance,
-            golden=part.golden,
+            purpose=part.purpose,
         )
         text = to_json(record)
         record_file = f"{day.name}/{inspection_id:08d}.json"

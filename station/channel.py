@@ -1,8 +1,11 @@
-"""Local channel from engine to panels over ZeroMQ; the only file that imports it.
+"""Local channel between engine and panels over ZeroMQ; the only file that imports it.
 
-Events are queued; previews ride a latest-only slot. The engine never waits for a panel, and a panel may come and go.
+Events are queued; previews ride a latest-only slot; requests go the other way. The engine never waits for a panel, and a panel may
+come and go.
 """
 
+import time
+from contextlib import suppress
 from typing import Annotated
 
 import zmq
@@ -10,10 +13,14 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from station.errors import LineError
 from station.events import Event, PartEvent, Preview, StatusEvent
+from station.requests import TestPicture
 from station.settings import ChannelSettings
 
 _EVENTS: TypeAdapter[Event] = TypeAdapter(Annotated[StatusEvent | PartEvent, Field(discriminator="type")])
 _PREVIEW = TypeAdapter(Preview)
+_REQUEST = TypeAdapter(TestPicture)
+FRESH_S = 2.0
+"""An older request is not carried out: whoever asked has seen that nothing came."""
 
 
 def _address(settings: ChannelSettings, port: int) -> str:
@@ -104,4 +111,58 @@ class Subscriber:
 
     def close(self) -> None:
         """Close both sockets."""
+        self._context.destroy(linger=0)
+
+
+class Inbox:
+    """Where the engine finds what panels ask for. Use from one thread."""
+
+    def __init__(self, settings: ChannelSettings) -> None:
+        """Bind. Raises LineError if the port is taken."""
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.PULL)
+        self._socket.setsockopt(zmq.IPV6, 1)
+        try:
+            self._socket.bind(_address(settings, settings.requests_port))
+        except zmq.ZMQError as error:
+            self.close()
+            address = _address(settings, settings.requests_port)
+            raise LineError(f"channel cannot listen on {address} ({error}); free it or set channel.requests_port") from None
+
+    def asked(self) -> bool:
+        """Whether a test picture was asked for just now; however often, it is one."""
+        fresh = False
+        while True:
+            try:
+                raw = self._socket.recv(zmq.NOBLOCK)
+            except zmq.Again:
+                return fresh
+            with suppress(ValidationError):
+                fresh |= abs(time.time() - _REQUEST.validate_json(raw).asked_s) <= FRESH_S
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._context.destroy(linger=0)
+
+
+class Outbox:
+    """Where a panel asks. Nothing is kept for an engine that is not there. Use from one thread."""
+
+    def __init__(self, settings: ChannelSettings) -> None:
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.PUSH)
+        for option, value in ((zmq.IMMEDIATE, 1), (zmq.SNDHWM, 2), (zmq.LINGER, 0), (zmq.IPV6, 1), (zmq.RECONNECT_IVL_MAX, 1000)):
+            self._socket.setsockopt(option, value)
+        self._socket.connect(_address(settings, settings.requests_port))
+
+    def ask(self) -> bool:
+        """Ask for a test picture; False if no engine is there."""
+        try:
+            self._socket.send(_REQUEST.dump_json(TestPicture(time.time())), zmq.NOBLOCK)
+        except zmq.Again:
+            return False
+        return True
+
+    def close(self) -> None:
+        """Close the socket."""
         self._context.destroy(linger=0)

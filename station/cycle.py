@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from station.answer import answer
 from station.archive import Archive, Pending
 from station.camera.port import Camera
-from station.domain import Frame, Inspection, Origin, Reason, Timing, Verdict
+from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing, Verdict
 from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError, WeldgateError
 from station.events import Counts, Event, PartEvent, Preview, StatusEvent
 from station.plc.port import Command, Health, Line, Trigger
@@ -36,6 +36,8 @@ class Listener:
 
     event: Callable[[Event], None]
     preview: Callable[[Preview], None]
+    asks: Callable[[], bool] = lambda: False
+    """Whether somebody asks for a test picture."""
 
 
 class Cycle:
@@ -82,6 +84,8 @@ class Cycle:
                     self._guarded(request)
                 elif isinstance(request, Command):
                     self._line.command_done(request, self._load_recipe(request.arg))
+                elif self._listener.asks():
+                    self._test_picture()
                 else:
                     self._watch.idle()
         finally:
@@ -176,7 +180,8 @@ class Cycle:
             inspection = self._judge(frame, inspection.timing)
             self._watch.part(inspection)
         start = time.perf_counter()
-        record = self._record(trigger, pending, inspection)
+        purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
+        record = self._record(Part(trigger.serial, trigger.trigger_id, self._origin, purpose), pending, inspection)
         record_ms = (time.perf_counter() - start) * 1000
         inspector, inspection = self._loaded.inspector, record.inspection
         nok, novel = tuple(inspector.is_nok(s) for s in inspection.scores), inspector.is_novel(inspection)
@@ -203,6 +208,20 @@ class Cycle:
         if frame is not None:
             self._listener.preview(make_preview(record.inspection_id, frame.image, inspection.ring))
 
+    def _test_picture(self) -> None:
+        """A picture of what lies there now, judged and recorded; the PLC is told nothing, the counters stand still."""
+        frame, inspection = self._grab()
+        pending = self._archive.begin(frame)
+        if frame is not None:
+            inspection = self._judge(frame, inspection.timing)
+        record = self._record(Part("", 0, self._origin, Purpose.TEST), pending, inspection)
+        self._mark(record, False)
+        inspector = self._loaded.inspector
+        nok, novel = tuple(inspector.is_nok(s) for s in record.inspection.scores), inspector.is_novel(record.inspection)
+        self._listener.event(PartEvent(record, nok, novel, self._watch.drift, False, 0.0, 0.0))
+        if frame is not None:
+            self._listener.preview(make_preview(record.inspection_id, frame.image, record.inspection.ring))
+
     def _mark(self, record: Record, shown: bool) -> None:
         try:
             self._archive.mark_shown(record.inspection_id, shown)
@@ -217,16 +236,15 @@ class Cycle:
         self._line.exposure_done(trigger)
         return frame, inspection
 
-    def _record(self, trigger: Trigger, pending: Pending, inspection: Inspection) -> Record:
+    def _record(self, part: Part, pending: Pending, inspection: Inspection) -> Record:
         """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
         now, provenance = datetime.now(UTC), self._loaded.provenance
-        part = Part(trigger.serial, trigger.trigger_id, self._origin, trigger.golden)
         try:
             return self._archive.commit(pending, inspection, part, provenance, now)
         except RecordError as error:
             log.error("%s", error)
         failed = Inspection.error(Reason.RECORD_FAILED, inspection.ring, inspection.quality, inspection.timing)
-        return Record(0, part.serial, part.trigger_id, now, "", part.origin, None, None, failed, provenance, part.golden)
+        return Record(0, part.serial, part.trigger_id, now, "", part.origin, None, None, failed, provenance, part.purpose)
 
     def _grab(self) -> tuple[Frame | None, Inspection]:
         """A frame, or why there is none."""

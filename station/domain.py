@@ -20,6 +20,16 @@ STRIP_ROWS = SEGMENT_PX
 SEGMENT_DEG = 360.0 / SEGMENTS
 
 
+class Purpose(StrEnum):
+    """Why a picture was taken; only a part's verdict releases anything."""
+
+    PART = "part"
+    GOLDEN = "golden"
+    """A master, because the PLC asked for it."""
+    TEST = "test"
+    """Because a person at the station asked for it; the PLC is told nothing."""
+
+
 class Verdict(StrEnum):
     """What the station says of a part. ERROR: not inspected; it is never a kind of OK."""
 

@@ -9,7 +9,7 @@ from datetime import datetime
 
 from pydantic import TypeAdapter
 
-from station.domain import Inspection, Origin, Verdict
+from station.domain import Inspection, Origin, Purpose, Verdict
 
 FORMAT = 1
 
@@ -35,7 +35,7 @@ class Part:
     serial: str
     trigger_id: int
     origin: Origin
-    golden: bool = False
+    purpose: Purpose = Purpose.PART
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +53,7 @@ class Record:
     frame_sha256: str | None
     inspection: Inspection
     provenance: Provenance
-    golden: bool = False
-    """A master, judged because the PLC asked for it: it never releases anything."""
+    purpose: Purpose = Purpose.PART
     format: int = FORMAT
 
     @property

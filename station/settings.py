@@ -160,6 +160,7 @@ class ChannelSettings(Section):
     host: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
     events_port: Port = 15551
     preview_port: Port = 15552
+    requests_port: Port = 15553
 
 
 class Settings(Section):

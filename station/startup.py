@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from station.archive import Archive
 from station.camera.port import Camera
-from station.channel import Publisher
+from station.channel import Inbox, Publisher
 from station.cycle import Cycle, Listener
 from station.domain import Verdict
 from station.errors import WeldgateError
@@ -77,11 +77,12 @@ def run_engine(settings: Settings) -> None:
         publisher = tried(lambda: stack.enter_context(closing(Publisher(settings.channel))))
         archive = tried(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
         bus = tried(lambda: stack.enter_context(closing(BusLog(settings.archive.folder, settings.archive.bus_days)))) if archive else None
-        if problems or loaded is None or publisher is None or archive is None or bus is None:
+        inbox = tried(lambda: stack.enter_context(closing(Inbox(settings.channel))))
+        if problems or loaded is None or publisher is None or archive is None or bus is None or inbox is None:
             raise WeldgateError("; ".join(problems))
         line = make_line(settings.plc, bus)
         stack.callback(line.stop)
         line.start()
         log.info("station up: model %s, PLC %s on port %d", loaded.provenance.model_version, settings.plc.mode, line.port)
-        cycle = make_cycle(settings, loaded, line, archive, Listener(publisher.send, publisher.show))
+        cycle = make_cycle(settings, loaded, line, archive, Listener(publisher.send, publisher.show, inbox.asked))
         cycle.run(stop)

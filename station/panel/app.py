@@ -7,7 +7,7 @@ import sys
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
-from station.channel import Subscriber
+from station.channel import Outbox, Subscriber
 from station.errors import WeldgateError
 from station.panel.bridge import Bridge
 from station.panel.window import Window
@@ -19,7 +19,7 @@ def run_panel(settings: Settings) -> int:
     if sys.platform == "linux" and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
         raise WeldgateError("no display for the window; set DISPLAY, or run 'weldgate engine' alone")
     app = QApplication.instance() or QApplication(sys.argv[:1])
-    window = Window(Bridge(Subscriber(settings.channel)))
+    window = Window(Bridge(Subscriber(settings.channel), Outbox(settings.channel)))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: window.close())
     wake = QTimer()  # lets Python see signals while Qt waits

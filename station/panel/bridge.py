@@ -2,7 +2,7 @@
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from station.channel import Subscriber
+from station.channel import Outbox, Subscriber
 from station.events import PartEvent, StatusEvent
 
 POLL_MS = 30
@@ -18,9 +18,9 @@ class Bridge(QObject):
     preview = Signal(object)
     """Preview"""
 
-    def __init__(self, subscriber: Subscriber) -> None:
+    def __init__(self, subscriber: Subscriber, outbox: Outbox) -> None:
         super().__init__()
-        self._subscriber = subscriber
+        self._subscriber, self._outbox = subscriber, outbox
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._poll)
         self._timer.start(POLL_MS)
@@ -35,7 +35,12 @@ class Bridge(QObject):
         if preview is not None:
             self.preview.emit(preview)
 
+    def ask_for_test_picture(self) -> bool:
+        """False if no engine is there."""
+        return self._outbox.ask()
+
     def close(self) -> None:
         """Stop listening."""
         self._timer.stop()
         self._subscriber.close()
+        self._outbox.close()

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from station.domain import Origin, Verdict
+from station.domain import Origin, Purpose, Verdict
 from station.events import PartEvent, StatusEvent
 from station.panel import theme
 from station.plc.registers import Offline
@@ -42,10 +42,13 @@ def lamp(status: StatusEvent | None, status_age_s: float, part: PartEvent | None
 def _of_part(part: PartEvent, strength: float) -> Lamp:
     record = part.record
     reason = "" if record.inspection.reason is None else str(record.inspection.reason)
+    if record.purpose is Purpose.TEST:
+        return Lamp("TEST", "T", theme.TEST, strength, f"test picture, judged {record.verdict}{reason and ': ' + reason}")
     if record.verdict is Verdict.ERROR or not part.shown_to_plc:
         return Lamp("ERROR", "!", theme.WARN, strength, reason or "result came too late for the PLC")
-    if record.golden or record.origin is Origin.REPLAY:
-        return Lamp("TEST", "T", theme.TEST, strength, f"{'master' if record.golden else 'replay'}, judged {record.verdict}")
+    if record.purpose is Purpose.GOLDEN or record.origin is Origin.REPLAY:
+        what = "master" if record.purpose is Purpose.GOLDEN else "replay"
+        return Lamp("TEST", "T", theme.TEST, strength, f"{what}, judged {record.verdict}")
     if record.verdict is Verdict.OK:
         return Lamp("OK", "✓", theme.GOOD, strength, "21 of 21 segments")
     return Lamp("NOK", "✗", theme.BAD, strength, reason)

@@ -16,5 +16,8 @@ QFrame#card {{ background: {SURFACE}; border: 1px solid {LINE}; border-radius: 6
 QFrame#card QLabel {{ background: transparent; }}
 QLabel#quiet {{ color: {QUIET}; font-size: 13px; }}
 QLabel#value {{ font-size: 22px; font-weight: 600; }}
+QPushButton#action {{ background: {SURFACE}; border: 1px solid {LINE}; border-radius: 6px; padding: 12px; font-size: 17px; }}
+QPushButton#action:pressed {{ background: {LINE}; }}
+QPushButton#action:disabled {{ color: {QUIET}; }}
 QLabel#badge {{ background: {TEST}; color: #101214; font-weight: 700; padding: 4px 10px; border-radius: 4px; }}
 """

@@ -4,13 +4,13 @@ import time
 
 from PySide6.QtCore import QTimer
 from PySide6.QtGui import QCloseEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMainWindow, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMainWindow, QPushButton, QVBoxLayout, QWidget
 
 from station.domain import Origin
 from station.events import PartEvent, Preview, StatusEvent
 from station.panel import theme
 from station.panel.bridge import Bridge
-from station.panel.lamp_state import lamp
+from station.panel.lamp_state import STATUS_LOST_S, lamp
 from station.panel.live_view import LiveView
 from station.panel.strip_view import StripView
 from station.panel.verdict_lamp import VerdictLamp
@@ -34,6 +34,10 @@ class Window(QMainWindow):
         self._badge = QLabel("SIMULATED CAMERA")
         self._badge.setObjectName("badge")
         self._badge.hide()
+        self._test = QPushButton("Test picture")
+        self._test.setObjectName("action")
+        self._test.setToolTip("Take a picture of what lies there now and judge it; the PLC is told nothing")
+        self._test.clicked.connect(bridge.ask_for_test_picture)
         self._facts = {name: QLabel("–") for name in FACTS}
         self._lay_out()
         bridge.status.connect(self._on_status)
@@ -51,6 +55,7 @@ class Window(QMainWindow):
         side.addWidget(self._lamp, 2)
         side.addWidget(self._card(FACTS[:7]))
         side.addWidget(self._card(FACTS[7:]))
+        side.addWidget(self._test)
         top = QHBoxLayout()
         top.addWidget(self._live, 5)
         column = QWidget()
@@ -113,6 +118,8 @@ class Window(QMainWindow):
 
     def _age(self) -> None:
         now = time.monotonic()
+        there = self._status is not None and now - self._status_s <= STATUS_LOST_S and self._status.camera_there
+        self._test.setEnabled(there)
         self._lamp.show_lamp(lamp(self._status, now - self._status_s, self._part, now - self._part_s))
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name

@@ -3,11 +3,12 @@
 from collections.abc import Iterator
 
 import pytest
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from deploy.demo import free_ports
-from station.channel import Publisher, Subscriber
+from station.channel import Inbox, Outbox, Publisher, Subscriber
 from station.domain import Image, Origin, Ring
 from station.errors import LineError
 from station.events import Counts, PartEvent, StatusEvent
@@ -21,8 +22,8 @@ from tests.parts import label_with, nok_inspection, record
 
 @pytest.fixture
 def settings() -> ChannelSettings:
-    events_port, preview_port = free_ports(2)
-    return ChannelSettings(events_port=events_port, preview_port=preview_port)
+    events_port, preview_port, requests_port = free_ports(3)
+    return ChannelSettings(events_port=events_port, preview_port=preview_port, requests_port=requests_port)
 
 
 @pytest.fixture
@@ -34,7 +35,7 @@ def publisher(settings: ChannelSettings) -> Iterator[Publisher]:
 
 @pytest.fixture
 def window(settings: ChannelSettings, qtbot: QtBot) -> Iterator[Window]:
-    shown = Window(Bridge(Subscriber(settings)))
+    shown = Window(Bridge(Subscriber(settings), Outbox(settings)))
     qtbot.addWidget(shown)
     shown.show()
     yield shown
@@ -67,6 +68,29 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
     picture = window.grab().toImage()
     colors = {picture.pixelColor(x, y).name() for x in range(0, picture.width(), 4) for y in range(0, picture.height(), 4)}
     assert "#e0483e" in colors, "the NOK red is nowhere on the window"
+
+
+def test_the_button_asks_the_engine_for_a_test_picture(
+    window: Window, publisher: Publisher, settings: ChannelSettings, qtbot: QtBot
+) -> None:
+    assert not window._test.isEnabled(), "no engine was heard yet"
+    inbox = Inbox(settings)
+    try:
+
+        def heard() -> None:
+            publisher.send(status())
+            assert window._test.isEnabled()
+
+        qtbot.waitUntil(heard, timeout=5000)
+        assert not inbox.asked()
+
+        def asked() -> None:
+            qtbot.mouseClick(window._test, Qt.MouseButton.LeftButton)
+            assert inbox.asked()
+
+        qtbot.waitUntil(asked, timeout=5000)
+    finally:
+        inbox.close()
 
 
 def test_without_an_engine_it_says_so(window: Window) -> None:

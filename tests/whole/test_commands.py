@@ -118,12 +118,12 @@ def test_check_says_what_is_wrong(tmp_path: Path) -> None:
 
 
 def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> None:
-    plc, events, preview = free_ports(3)
+    plc, events, preview, requests = free_ports(4)
     path = tmp_path / "station.toml"
     path.write_text(
         SETTINGS
         + f'[model]\npath = "{MODEL}"\nring_path = "{RING_MODEL}"\n[plc]\nport = {plc}\n'
-        + f"[channel]\nevents_port = {events}\npreview_port = {preview}\n"
+        + f"[channel]\nevents_port = {events}\npreview_port = {preview}\nrequests_port = {requests}\n"
     )
     engine = subprocess.Popen(
         [sys.executable, "-m", "station", "engine", "-c", str(path)],

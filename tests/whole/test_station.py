@@ -4,6 +4,7 @@ import asyncio
 import hashlib
 import os
 import threading
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +18,7 @@ from station.archive import Archive, read_records
 from station.classify.drift import Reference, write_reference
 from station.classify.onnx import LOOK
 from station.cycle import Listener
-from station.domain import Image, Reason, Verdict
+from station.domain import Image, Purpose, Reason, Verdict
 from station.errors import ModelError, RecordError
 from station.events import Event, PartEvent
 from station.plc.line import ModbusLine, make_line
@@ -42,6 +43,7 @@ class Station:
     port: int
     folder: Path
     events: list[Event]
+    asked: threading.Event
 
     def run(self, parts: list[Image | None], accept_simulated: bool = True) -> list[Answer]:
         """Pass parts through the line; None: no picture before the camera."""
@@ -93,11 +95,18 @@ def station(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     loaded = prepare(settings, 1)
     archive, line = Archive(settings.archive), make_line(settings.plc)
     line.start()
-    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None))
+    asked = threading.Event()
+
+    def asks() -> bool:
+        wanted = asked.is_set()
+        asked.clear()
+        return wanted
+
+    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None, asks))
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
-    yield Station(feed, line.port, settings.archive.folder, events)
+    yield Station(feed, line.port, settings.archive.folder, events, asked)
     stop.set()
     thread.join(timeout=10)
     line.stop()
@@ -167,6 +176,27 @@ def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(s
     assert recipes == [1, 2, 1]
 
 
+def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(station: Station, frames: dict[str, Image]) -> None:
+    (before,) = station.run([frames[label_with("OK")["frame"]]])
+    station.asked.set()
+    until = time.monotonic() + 20
+    while len(station.part_events()) < 2 and time.monotonic() < until:
+        time.sleep(0.05)
+    event = station.part_events()[-1]
+    assert (event.record.purpose, event.record.verdict, event.shown_to_plc) == (Purpose.TEST, Verdict.OK, False)
+
+    async def look() -> dict[str, object]:
+        line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
+        await line.connect()
+        await line.wait_ready(5.0)
+        await line.close()
+        return dict(line.status())
+
+    seen = asyncio.run(look())
+    assert (seen["VERDICT"], seen["ACK_TRIGGER_ID"], seen["COUNT_OK"]) == (0, before.trigger_id, 1)
+    assert [r.purpose for e in read_records(station.folder) if (r := e.record) is not None] == [Purpose.PART, Purpose.TEST]
+
+
 def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(station: Station, frames: dict[str, Image]) -> None:
     good, bad = frames[label_with("OK")["frame"]], frames[label_with("hole")["frame"]]
 
@@ -195,7 +225,7 @@ def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(s
     assert seen[1] == (VerdictCode.OK, None)
     assert seen[3] == (VerdictCode.OK, "station reports failure or function check")
     assert seen[5] == (VerdictCode.OK, None)
-    assert [(r.golden, str(r.verdict)) for e in read_records(station.folder) if (r := e.record) is not None] == [
+    assert [(r.purpose is Purpose.GOLDEN, str(r.verdict)) for e in read_records(station.folder) if (r := e.record) is not None] == [
         (True, "OK"),
         (False, "OK"),
         (True, "OK"),
