@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
-.PHONY: help setup demo test lint bench chaos-plc clean
+.PHONY: help setup demo test lint bench chaos-plc chaos-records clean
 
 help: ## what can be made
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -26,11 +26,15 @@ lint: $(VENV)/.dev ## ruff, mypy, import contracts
 bench: $(VENV)/.dev ## times of each step on the emulated camera, of the generator and of the classifier
 	$(BIN)/python -m deploy.bench
 	$(BIN)/python -m deploy.bench_plc
+	$(BIN)/python -m deploy.bench_records
 	$(BIN)/python -m deploy.bench_render
 	$(BIN)/python -m models.bench
 
 chaos-plc: $(VENV)/.demo ## 10,000 parts in each PLC mode with both sides misbehaving
 	$(BIN)/python -m deploy.chaos_plc
+
+chaos-records: $(VENV)/.demo ## 300 kills of a writer of records
+	$(BIN)/python -m deploy.chaos_records
 
 clean: ## remove the virtual environment
 	rm -rf $(VENV)

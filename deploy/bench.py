@@ -15,7 +15,7 @@ from rich.progress import track
 from rich.table import Table
 
 from deploy.demo import SERIAL, free_ports, shipped_parts
-from station.archive import Archive
+from station.archive.writer import Archive
 from station.cycle import Listener
 from station.errors import WeldgateError
 from station.events import Event, PartEvent

@@ -13,6 +13,7 @@ from typing import Any
 
 from station import __version__
 from station.errors import WeldgateError
+from station.records_command import add_commands
 
 SETTINGS = Path("station.toml")
 SHIPPED = Path(__file__).resolve().parent.parent / "models" / "shipped"
@@ -53,9 +54,7 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument("--json", type=Path, metavar="FILE", help="write all results as JSON")
     replay.add_argument("--csv", type=Path, metavar="FILE", help="write a table")
     add("check", _check, "say what is wrong with settings, model, archive, camera and port, and what to do")
-    records = add("records", _records, "list and verify the records of an archive", settings=False)
-    records.add_argument("folder", type=Path, metavar="FOLDER")
-    records.add_argument("--bus", action="store_true", help="print the edges on the PLC bus, and what was against the rules")
+    add_commands(commands.add_parser("records", help="list, verify, prune and export the records of an archive; edges on the bus"))
     registers = add("registers", _registers, "print the register map", settings=False)
     registers.add_argument(
         "--format",
@@ -150,27 +149,6 @@ def _check(arguments: argparse.Namespace) -> int:
         print(f"{'ok  ' if problem is None else 'BAD '} {name}{'' if problem is None else ': ' + problem}")
         problems += problem is not None
     return 1 if problems else 0
-
-
-def _records(arguments: argparse.Namespace) -> int:
-    from station.archive import read_records
-    from station.plc.buslog import read_bus
-
-    if arguments.bus:
-        for edge in read_bus(arguments.folder):
-            print(f"{edge.time}  {edge.by:7}  {edge.name:18} {edge.value!s:>6}  {edge.note}".rstrip())
-        return 0
-    bad = 0
-    for entry in read_records(arguments.folder):
-        record = entry.record
-        if record is not None:
-            late = {True: "", False: "  (came too late for the PLC)", None: "  (unknown whether the PLC saw it)"}[entry.shown_to_plc]
-            reason = f"{record.inspection.reason or ''}{late}"
-            print(f"{record.inspection_id:8d}  {record.grabbed_at:%Y-%m-%d %H:%M:%S}  {record.verdict:5}  {record.serial:20}  {reason}")
-        if entry.problem is not None:
-            bad += 1
-            print(f"weldgate: {entry.path}: {entry.problem}", file=sys.stderr)
-    return 1 if bad else 0
 
 
 def _registers(arguments: argparse.Namespace) -> int:

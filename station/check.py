@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
-from station.archive import Archive
+from station.archive.room import Room
+from station.archive.writer import Archive
 from station.errors import WeldgateError
 from station.plc.line import make_line
 from station.recipe import prepare
@@ -38,10 +39,10 @@ def _model(settings: Settings) -> None:
 def _archive(settings: Settings) -> None:
     archive = Archive(settings.archive)
     try:
-        if not archive.has_room():
-            raise WeldgateError(
-                f"{settings.archive.folder}: less than {settings.archive.min_free_mb} MB free; make room or set archive.min_free_mb"
-            )
+        room = archive.room()
+        if room is not Room.ENOUGH:
+            limit = (settings.archive.min_free_mb, settings.archive.thin_free_mb, settings.archive.warn_free_mb)[room]
+            raise WeldgateError(f"{settings.archive.folder}: less than {limit} MB free; make room, or keep less under archive.keep")
     finally:
         archive.close()
 

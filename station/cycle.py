@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
 from station.answer import answer
-from station.archive import Archive, Pending
+from station.archive.room import Room
+from station.archive.writer import Archive, Pending
 from station.camera.port import Camera
 from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing, Verdict
 from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError, WeldgateError
@@ -71,6 +72,7 @@ class Cycle:
         self._alive_s = 0.0
         self._status_s = 0.0
         self._counts = Counts()
+        self._room = Room.ENOUGH
 
     def run(self, stop: threading.Event) -> None:
         """Serve triggers until `stop`; closes the camera at the end."""
@@ -142,8 +144,17 @@ class Cycle:
             config_crc=self._loaded.provenance.config_crc,
             out_of_spec=self._watch.drifting,
             function_check=self._watch.master_wrong,
+            maintenance=self._low_room(),
             recipe=self._loaded.provenance.recipe,
         )
+
+    def _low_room(self) -> bool:
+        room = self._archive.room()
+        if room is not self._room:
+            words = {Room.FULL: "is full", Room.THIN: "fills: pictures of OK parts are left out", Room.LOW: "fills: make room"}
+            log.warning("the disk of the archive %s", words.get(room, "has room again"))
+            self._room = room
+        return room is not Room.ENOUGH
 
     def _tell_status(self) -> None:
         now = time.monotonic()

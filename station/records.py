@@ -1,4 +1,4 @@
-"""One inspection on disk. Version 1.
+"""One inspection on disk. Version 2; version 1 lacks look, purpose, recipe and chain, and is read.
 
 A record is `YYYY-MM-DD/NNNNNNNN.png`, the frame as grabbed, lossless, and `NNNNNNNN.json`, all that led to its verdict;
 the index is `index.sqlite` beside the day folders. Readable with any image viewer and any SQLite tool.
@@ -11,7 +11,7 @@ from pydantic import TypeAdapter
 
 from station.domain import Inspection, Origin, Purpose, Verdict
 
-FORMAT = 1
+FORMAT = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +54,8 @@ class Record:
     inspection: Inspection
     provenance: Provenance
     purpose: Purpose = Purpose.PART
+    chain_before: str = ""
+    """Hash over all records before this one."""
     format: int = FORMAT
 
     @property

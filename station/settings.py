@@ -145,13 +145,45 @@ class PlcSettings(Section):
         return self
 
 
+Days = Annotated[int, Field(ge=1, le=36500)]
+
+
+class KeepSettings(Section):
+    """How long pictures and records are kept."""
+
+    ok_all_days: Days = 7
+    """Pictures of all OK parts."""
+    ok_share: Share = 0.1
+    """Of the OK parts after that, chosen by their number."""
+    ok_days: Days = 90
+    nok_days: Days = 730
+    error_days: Days = 365
+    record_days: Days = 3650
+    """Records themselves."""
+    quota_gib: float = Field(default=500.0, gt=0)
+    """Of pictures; the oldest OK go first, then those not judged, then NOK."""
+
+
 class ArchiveSettings(Section):
-    """Where records go."""
+    """Where records go, and what happens when the disk fills."""
 
     folder: Path = Path("records")
+    warn_free_mb: int = Field(default=10_000, ge=1)
+    """Below this the station warns."""
+    thin_free_mb: int = Field(default=2_000, ge=1)
+    """Below this pictures of OK parts are left out."""
     min_free_mb: int = Field(default=500, ge=1)
-    bus_days: int = Field(default=30, ge=1, le=3650)
+    when_full: Literal["stop", "no_pictures"] = "stop"
+    """Below min_free_mb: take no parts, or go on with records alone."""
+    keep: KeepSettings = KeepSettings()
+    bus_days: Days = 30
     """How long the edges of the PLC bus are kept."""
+
+    @model_validator(mode="after")
+    def _levels_in_order(self) -> "ArchiveSettings":
+        if not self.min_free_mb <= self.thin_free_mb <= self.warn_free_mb:
+            raise ValueError("min_free_mb <= thin_free_mb <= warn_free_mb is needed")
+        return self
 
 
 class ChannelSettings(Section):

@@ -8,7 +8,8 @@ from contextlib import ExitStack, closing
 from types import FrameType
 from typing import TypeVar
 
-from station.archive import Archive
+from station.archive.prune import Housekeeping
+from station.archive.writer import Archive
 from station.camera.port import Camera
 from station.channel import Inbox, Publisher
 from station.cycle import Cycle, Listener
@@ -77,6 +78,8 @@ def run_engine(settings: Settings) -> None:
         publisher = tried(lambda: stack.enter_context(closing(Publisher(settings.channel))))
         archive = tried(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
         bus = tried(lambda: stack.enter_context(closing(BusLog(settings.archive.folder, settings.archive.bus_days)))) if archive else None
+        if archive:
+            stack.enter_context(closing(Housekeeping(settings.archive.folder, settings.archive.keep)))
         inbox = tried(lambda: stack.enter_context(closing(Inbox(settings.channel))))
         if problems or loaded is None or publisher is None or archive is None or bus is None or inbox is None:
             raise WeldgateError("; ".join(problems))

@@ -10,7 +10,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from station.errors import RecordError
-from station.plc.handshake import ERROR_BAD_TRIGGER_ID
+from station.plc.handshake import ERROR_BAD_TRIGGER_ID, ERROR_STUCK_BIT
 from station.plc.registers import Control, Offline, Status, Value, VerdictCode, number
 
 log = logging.getLogger("weldgate.bus")
@@ -78,7 +78,8 @@ def _station_note(flag: Status, on: bool, rising: Control, after: Values) -> str
     if flag is Status.MISSED_TRIGGER and on:
         return "rule broken: TRIGGER_ID 0 or repeated" if after["ERROR_CODE"] == ERROR_BAD_TRIGGER_ID else "TRIGGER not taken"
     if flag is Status.MAINTENANCE and on:
-        return "rule broken: TRIGGER or RESULT_ACK held too long"
+        stuck = after["ERROR_CODE"] == ERROR_STUCK_BIT
+        return "rule broken: TRIGGER or RESULT_ACK held too long" if stuck else "the station's disk fills"
     if flag is Status.RESULT_VALID and not on:
         if rising & Control.RESULT_ACK:
             return "cleared by RESULT_ACK"

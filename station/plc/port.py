@@ -60,6 +60,8 @@ class Health:
     """NE 107: out of specification; the pictures drift, the parts are judged."""
     function_check: bool = False
     """NE 107: a master was judged wrongly; no verdict counts until it is judged right."""
+    maintenance: bool = False
+    """NE 107: maintenance required; the disk fills."""
     recipe: int = 1
     """Number of the recipe in use."""
 

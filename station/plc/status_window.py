@@ -23,7 +23,7 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         (Status.ERROR, s.error),
         (Status.MISSED_TRIGGER, s.missed),
         (Status.CMD_DONE, s.cmd_done),
-        (Status.MAINTENANCE, s.stuck),
+        (Status.MAINTENANCE, s.stuck or health.maintenance),
         (Status.FUNCTION_CHECK, health.function_check or verdict is VerdictCode.TEST),
         (Status.OUT_OF_SPEC, health.out_of_spec),
         (Status.FAILURE, health.failure),

@@ -48,7 +48,7 @@ def test_an_edge_has_its_time_in_milliseconds_and_who_made_it() -> None:
         (ON | Control.TRIGGER, ON, Status.READY, Status.READY, {}, "TRIGGER dropped before TRIGGER_ACK"),
         (ON, ON | Control.RESULT_ACK, Status.READY, Status.READY, {}, "RESULT_ACK without RESULT_VALID"),
         (ON, ON, Status(0), Status.MISSED_TRIGGER, {"ERROR_CODE": 0x2103}, "TRIGGER_ID 0 or repeated"),
-        (ON, ON, Status(0), Status.MAINTENANCE, {}, "held too long"),
+        (ON, ON, Status(0), Status.MAINTENANCE, {"ERROR_CODE": 0x2104}, "held too long"),
         (ON, ON | Control.RESULT_ACK, Status.RESULT_VALID, Status(0), {}, "cleared by RESULT_ACK"),
         (ON, ON | Control.TRIGGER, Status.RESULT_VALID | Status.READY, Status.BUSY, {}, "cleared by the next TRIGGER"),
         (ON, ON, Status.RESULT_VALID, Status(0), {}, "cleared by the station"),
@@ -85,7 +85,7 @@ def test_edges_are_on_disk_in_order_and_old_files_go(tmp_path: Path, capsys: pyt
     recorder.close()
     assert [e.value for e in read_bus(tmp_path)] == [1, 0] * 24 + [1]
     assert [p.name for p in tmp_path.iterdir()] == ["bus-2027-01-15.jsonl"]
-    assert main(["records", str(tmp_path), "--bus"]) == 0
+    assert main(["records", "bus", str(tmp_path)]) == 0
     assert capsys.readouterr().out.count("ENABLE") == 49
 
 

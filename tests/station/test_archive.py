@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from station.archive import Archive, read_records
+from station.archive.reader import read_records
+from station.archive.writer import Archive
 from station.domain import Frame, Image, Inspection, Origin, Reason
 from station.errors import RecordError
 from station.imagefile import read_image
@@ -14,10 +15,12 @@ from station.records import Part, Record
 from station.settings import ArchiveSettings
 from tests.parts import nok_inspection, ok_inspection, provenance
 
+ROOMY = {"min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1}
+
 
 @pytest.fixture
 def archive(tmp_path: Path) -> Iterator[Archive]:
-    kept = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1))
+    kept = Archive(ArchiveSettings(folder=tmp_path, **ROOMY))
     yield kept
     kept.close()
 
@@ -45,7 +48,7 @@ def test_what_is_written_reads_back_whole(archive: Archive, tmp_path: Path, rng:
 def test_numbers_go_on_after_a_restart(archive: Archive, tmp_path: Path) -> None:
     first = put(archive, None, Inspection.error(Reason.NO_FRAME))
     archive.close()
-    again = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1))
+    again = Archive(ArchiveSettings(folder=tmp_path, **ROOMY))
     assert put(again, None, Inspection.error(Reason.NO_FRAME)).inspection_id == first.inspection_id + 1
     again.close()
 
@@ -83,7 +86,7 @@ def test_a_locked_index_is_an_error_and_lists_nothing(archive: Archive, tmp_path
 
 def test_a_second_engine_is_refused(archive: Archive, tmp_path: Path) -> None:
     with pytest.raises(RecordError, match="another engine"):
-        Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1))
+        Archive(ArchiveSettings(folder=tmp_path, **ROOMY))
 
 
 def test_the_index_says_whether_the_plc_was_shown(archive: Archive, tmp_path: Path) -> None:
@@ -95,7 +98,7 @@ def test_the_index_says_whether_the_plc_was_shown(archive: Archive, tmp_path: Pa
 
 def test_odd_folder_names_are_read(tmp_path: Path) -> None:
     folder = tmp_path / "rec#1 %41?ä"
-    kept = Archive(ArchiveSettings(folder=folder, min_free_mb=1))
+    kept = Archive(ArchiveSettings(folder=folder, **ROOMY))
     put(kept, None, Inspection.error(Reason.NO_FRAME))
     kept.close()
     assert len(list(read_records(folder))) == 1
@@ -113,6 +116,6 @@ def test_no_archive_is_said(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_is_seen(tmp_path: Path) -> None:
-    kept = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=10**9))
+    kept = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=10**9, thin_free_mb=10**9, warn_free_mb=10**9))
     assert not kept.has_room()
     kept.close()

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from deploy.demo import free_ports
-from station.archive import read_records
+from station.archive.reader import read_records
 from station.channel import Subscriber
 from station.events import StatusEvent
 from station.plc.registers import Offline
@@ -96,7 +96,7 @@ def test_mistakes_end_with_one_line_and_code_2(command: list[str], text: str | N
     ("command", "said"),
     [
         (["station", "replay", "/nowhere/at/all"], "no such file"),
-        (["station", "records", "/nowhere/at/all"], "no records here"),
+        (["station", "records", "list", "/nowhere/at/all"], "no records here"),
         (["models", "train", "/nowhere/at/all", "--out", "/tmp"], "weldgate-synth dataset"),
         (["station", "line", "--port", "1", "--parts", "1"], "no Modbus server"),
     ],

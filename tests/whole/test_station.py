@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from deploy.demo import free_ports
-from station.archive import Archive, read_records
+from station.archive.reader import read_records
+from station.archive.writer import Archive
 from station.classify.drift import Reference, write_reference
 from station.classify.onnx import LOOK
 from station.cycle import Listener
@@ -78,7 +79,7 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
         {
             "camera": {"kind": "pylon", "device_class": "BaslerCamEmu", "serial": "0815-0000", "reconnect_s": 0.1},
             "model": {"path": MODEL, "ring_path": RING_MODEL, "reference_path": reference},
-            "archive": {"folder": tmp_path / "records", "min_free_mb": 1},
+            "archive": {"folder": tmp_path / "records", "min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1},
             "plc": {"port": free_ports(1)[0], "deadline_ms": 5000},
             "golden": {"masters": {"MASTER-OK": "OK", "MASTER-NOK": "NOK"}},
             "recipes": {2: {"model": {"hole_threshold": 0.0001}}, 3: {"model": {"path": tmp_path / "absent.onnx"}}},

@@ -1,0 +1,98 @@
+"""What a record costs, and how long a search among a hundred thousand takes."""
+
+import statistics
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from deploy.demo import shipped_parts
+from station.archive.reader import Wanted, find
+from station.archive.schema import open_index
+from station.archive.writer import Archive
+from station.domain import SEGMENTS, Frame, Inspection, Origin, Ring, SegmentScores, Verdict
+from station.imagefile import encode_png, read_image
+from station.records import Part, Provenance
+from station.settings import ArchiveSettings
+
+RECORDS, TIMES = 100_000, 30
+START = datetime(2026, 1, 1, tzinfo=UTC)
+
+
+def main(_argv: Sequence[str] | None = None) -> int:
+    """Print medians and worst."""
+    table = Table("", "median ms", "worst ms", title=f"records, {TIMES} times each")
+    with tempfile.TemporaryDirectory(prefix="weldgate-") as name:
+        folder = Path(name)
+        for what, work in (*_writing(folder / "written"), *_searching(folder / "searched")):
+            taken = []
+            for _ in range(TIMES):
+                start = perf_counter()
+                work()
+                taken.append((perf_counter() - start) * 1000)
+            table.add_row(what, f"{statistics.median(taken):.1f}", f"{max(taken):.1f}")
+    Console(width=110).print(table)
+    return 0
+
+
+def _writing(folder: Path) -> list[tuple[str, Callable[[], object]]]:
+    image = read_image(shipped_parts()[0].path)
+    archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
+    scores = (SegmentScores(0.9, 0.05, 0.05),) * SEGMENTS
+    inspection = Inspection(Verdict.OK, None, Ring(50, 50, 40, 1), None, scores, look=(0.123,) * 192)
+    provenance = Provenance("bench", "0", "", "", 0, 0.5, 0.5)
+
+    def commit(frame: Frame | None) -> None:
+        archive.commit(archive.begin(frame), inspection, Part("BENCH", 1, Origin.SIMULATED), provenance, datetime.now(UTC))
+
+    frame = Frame(image, datetime.now(UTC), "bench", Origin.SIMULATED)
+    return [
+        (f"encode a frame of {image.shape[1]} x {image.shape[0]}, beside the inspection", lambda: encode_png(image)),
+        ("encode, files, fsync, row", lambda: commit(frame)),
+        ("record without a frame: file, fsync, row", lambda: commit(None)),
+    ]
+
+
+def _searching(folder: Path) -> list[tuple[str, Callable[[], object]]]:
+    folder.mkdir()
+    index, rng = open_index(folder), np.random.default_rng(0)
+    worst = rng.beta(0.3, 6, RECORDS)
+    rows, segments = [], []
+    for i in range(RECORDS):
+        when = (START + timedelta(seconds=20 * i)).isoformat()
+        verdict = "NOK" if worst[i] > 0.5 else "OK"
+        name = f"2026-01-01/{i + 1:08d}"
+        rows.append((f"CELL-{i:07d}", i % 65535 + 1, when, verdict, float(worst[i]), name))
+        if worst[i] >= 0.05:
+            segments.append((i + 1, int(rng.integers(1, SEGMENTS + 1)), float(worst[i])))
+    with index:
+        index.executemany(
+            "INSERT INTO records (serial, trigger_id, grabbed_at, origin, verdict, worst_score, record_file, record_sha256) "
+            "VALUES (?, ?, ?, 'camera', ?, ?, ?, '')",
+            rows,
+        )
+        index.executemany("INSERT INTO segments VALUES (?, ?, ?)", segments)
+    index.close()
+    day = START + timedelta(days=10)
+    wanted = (
+        ("one serial", Wanted(serial="CELL-0077777")),
+        ("serials by their beginning, 1000", Wanted(serial="CELL-0077*")),
+        ("an hour", Wanted(since=day, until=day + timedelta(hours=1))),
+        ("segment 7 with at least 0.8", Wanted(segment=7, min_score=0.8)),
+        ("the last 300", Wanted(newest_first=True, limit=300)),
+        ("the last 100 NOK", Wanted(verdict="NOK", newest_first=True, limit=100)),
+    )
+    return [
+        (f"find {name}: {len(find(folder, w))} of {RECORDS}", lambda chosen=w: find(folder, chosen))  # type: ignore[misc]
+        for name, w in wanted
+    ]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

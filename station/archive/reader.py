@@ -1,0 +1,165 @@
+"""Finds and reads records."""
+
+import hashlib
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from station.archive.schema import START, link, read_index
+from station.errors import RecordError
+from station.records import Record, from_json
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is looked for; None: anything."""
+
+    serial: str | None = None
+    """Exactly, or its beginning with * behind it."""
+    since: datetime | None = None
+    until: datetime | None = None
+    verdict: str | None = None
+    reason: str | None = None
+    segment: int | None = None
+    """1 to 21, together with `min_score`."""
+    min_score: float | None = None
+    """Score of NOK, at least 0.05: of the segment, or of the worst."""
+    newest_first: bool = False
+    limit: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of the index."""
+
+    inspection_id: int
+    serial: str
+    trigger_id: int
+    grabbed_at: str
+    verdict: str
+    reason: str | None
+    worst_score: float | None
+    frame_file: str | None
+    frame_state: str
+    """kept, thinned (left out for lack of room), pruned (let go), none (no picture came)."""
+    record_file: str
+    record_sha256: str
+    shown_to_plc: bool | None
+    """None: the station stopped before it could tell."""
+    purpose: str
+    recipe: int
+    chain: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """One entry of the index: the record if it can be read, and what is wrong with it, if anything."""
+
+    row: Row
+    path: Path
+    record: Record | None
+    problem: str | None
+
+    @property
+    def shown_to_plc(self) -> bool | None:
+        """None: the station stopped before it could tell."""
+        return self.row.shown_to_plc
+
+
+def find(folder: Path, wanted: Wanted = Wanted()) -> list[Row]:
+    """Rows in order of their number. Raises RecordError if the folder holds no archive."""
+    joined = wanted.segment is not None
+    conditions, values = _conditions(wanted)
+    where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
+    order = " ORDER BY r.inspection_id" + (" DESC" if wanted.newest_first else "")
+    limit = "" if wanted.limit is None else f" LIMIT {int(wanted.limit)}"
+    names = ", ".join(f"r.{name}" for name in Row.__slots__)
+    join = " JOIN segments s ON s.inspection_id = r.inspection_id" if joined else ""
+    with closing(read_index(folder)) as connection:
+        try:
+            rows = connection.execute(f"SELECT {names} FROM records r{join}{where}{order}{limit}", values).fetchall()
+        except sqlite3.Error as error:
+            raise RecordError(f"{folder}: the index cannot be read ({error})") from None
+    return [Row(**{**dict(row), "shown_to_plc": None if row["shown_to_plc"] is None else bool(row["shown_to_plc"])}) for row in rows]
+
+
+def _conditions(wanted: Wanted) -> tuple[list[str], list[str | float]]:
+    chosen: list[tuple[str, str | float | None]] = [
+        ("r.grabbed_at >= ?", None if wanted.since is None else wanted.since.isoformat()),
+        ("r.grabbed_at < ?", None if wanted.until is None else wanted.until.isoformat()),
+        ("r.verdict = ?", wanted.verdict),
+        ("r.reason = ?", wanted.reason),
+        ("s.segment = ?", wanted.segment),
+        ("s.p_nok >= ?" if wanted.segment is not None else "r.worst_score >= ?", wanted.min_score),
+    ]
+    if wanted.serial is not None and wanted.serial.endswith("*"):
+        chosen += [("r.serial >= ?", wanted.serial[:-1]), ("r.serial < ?", wanted.serial[:-1] + "\U0010ffff")]
+    else:
+        chosen.append(("r.serial = ?", wanted.serial))
+    return [condition for condition, value in chosen if value is not None], [value for _, value in chosen if value is not None]
+
+
+def read_records(folder: Path, wanted: Wanted = Wanted()) -> Iterator[Listed]:
+    """Records in order of their number, each with what is wrong with its files. Raises RecordError if the folder holds no archive."""
+    for row in find(folder, wanted):
+        record, problem = read_record(folder, row)
+        yield Listed(row, folder / row.record_file, record, problem)
+
+
+def read_record(folder: Path, row: Row) -> tuple[Record | None, str | None]:
+    """A record and what is wrong with it, if anything."""
+    try:
+        text = (folder / row.record_file).read_bytes()
+    except OSError as error:
+        return None, f"cannot be read ({error.strerror})"
+    if hashlib.sha256(text).hexdigest() != row.record_sha256:
+        return None, "was changed after it was written"
+    try:
+        record = from_json(text)
+    except ValidationError:
+        return None, "is not a record of this version"
+    return record, _frame_problem(folder, row, record)
+
+
+def _frame_problem(folder: Path, row: Row, record: Record) -> str | None:
+    if row.frame_file is None or row.frame_state != "kept":
+        return None
+    try:
+        png = (folder / row.frame_file).read_bytes()
+    except OSError as error:
+        return f"its frame {row.frame_file} cannot be read ({error.strerror})"
+    return None if hashlib.sha256(png).hexdigest() == record.frame_sha256 else f"its frame {row.frame_file} was changed"
+
+
+def verify(folder: Path) -> Iterator[tuple[str, str]]:
+    """(file or place, what is wrong) for all that is missing, altered or taken out. Raises RecordError if there is no archive."""
+    chain, before = _let_go(folder)
+    rows = find(folder)
+    for row in rows:
+        if row.inspection_id != before + 1:
+            yield f"records {before + 1} to {row.inspection_id - 1}", "were taken out of the index"
+        record, problem = read_record(folder, row)
+        if problem is not None:
+            yield row.record_file, problem
+        if row.chain is not None:
+            if row.chain != link(chain, row.record_sha256):
+                yield row.record_file, "does not follow the record before it: something here was taken out or exchanged"
+            elif record is not None and record.chain_before != chain:
+                yield row.record_file, "names another record before it"
+        chain, before = row.chain or START, row.inspection_id
+    listed = {name for row in rows for name in (row.record_file, row.frame_file) if name is not None}
+    for path in sorted(folder.glob("????-??-??/*")):
+        name = path.relative_to(folder).as_posix()
+        if name not in listed:
+            yield name, "is not listed: left by a stop in the middle of a part, or put here"
+
+
+def _let_go(folder: Path) -> tuple[str, int]:
+    with closing(read_index(folder)) as connection:
+        row = connection.execute("SELECT chain, inspection_id FROM let_go ORDER BY inspection_id DESC LIMIT 1").fetchone()
+    return (START, 0) if row is None else (row["chain"], row["inspection_id"])

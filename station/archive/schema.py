@@ -1,0 +1,111 @@
+"""The index: an SQLite file beside the day folders, readable with any SQLite tool.
+
+Each record is chained to the one before it: `chain` is the SHA-256 of the chain before and the record's own hash, and the record itself
+holds the chain before. What is taken out or changed afterwards breaks the chain there.
+"""
+
+import hashlib
+import sqlite3
+from pathlib import Path
+
+from station.errors import RecordError
+
+NAME = "index.sqlite"
+VERSION = 2
+START = "0" * 64
+"""Chain before the first record."""
+SEARCHABLE_SCORE = 0.05
+"""Segments with a lower score of NOK are not in the table of segments; the record has them all."""
+
+SCHEMA = """
+CREATE TABLE IF NOT EXISTS records (
+    inspection_id INTEGER PRIMARY KEY AUTOINCREMENT,
+    serial TEXT NOT NULL,
+    trigger_id INTEGER NOT NULL,
+    grabbed_at TEXT NOT NULL,
+    origin TEXT NOT NULL,
+    verdict TEXT NOT NULL,
+    reason TEXT,
+    worst_score REAL,
+    frame_file TEXT,
+    record_file TEXT NOT NULL,
+    record_sha256 TEXT NOT NULL,
+    shown_to_plc INTEGER,
+    purpose TEXT NOT NULL DEFAULT 'part',
+    recipe INTEGER NOT NULL DEFAULT 1,
+    chain TEXT,
+    frame_state TEXT NOT NULL DEFAULT 'kept'
+);
+CREATE INDEX IF NOT EXISTS records_serial ON records (serial);
+CREATE INDEX IF NOT EXISTS records_time ON records (grabbed_at);
+CREATE INDEX IF NOT EXISTS records_verdict ON records (verdict, inspection_id);
+CREATE INDEX IF NOT EXISTS records_reason ON records (reason, inspection_id);
+CREATE TABLE IF NOT EXISTS segments (
+    inspection_id INTEGER NOT NULL,
+    segment INTEGER NOT NULL,
+    p_nok REAL NOT NULL
+);
+CREATE INDEX IF NOT EXISTS segments_score ON segments (segment, p_nok, inspection_id);
+CREATE INDEX IF NOT EXISTS segments_record ON segments (inspection_id);
+CREATE TABLE IF NOT EXISTS let_go (
+    inspection_id INTEGER NOT NULL,
+    chain TEXT NOT NULL
+);
+"""
+ADDED = {
+    "purpose": "TEXT NOT NULL DEFAULT 'part'",
+    "recipe": "INTEGER NOT NULL DEFAULT 1",
+    "chain": "TEXT",
+    "frame_state": "TEXT NOT NULL DEFAULT 'kept'",
+}
+"""Columns that archives of version 1 lack; their records have no chain."""
+
+
+def open_index(folder: Path) -> sqlite3.Connection:
+    """The index for writing, made or brought up to date. Raises sqlite3.Error, RecordError if it is of a later version."""
+    connection = sqlite3.connect(folder / NAME, timeout=2.0, check_same_thread=False)
+    version = connection.execute("PRAGMA user_version").fetchone()[0]
+    if version > VERSION:
+        connection.close()
+        raise RecordError(f"{folder}: index of version {version}, this software writes {VERSION}; update it, or set another archive.folder")
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = FULL")
+    present = {row[1] for row in connection.execute("PRAGMA table_info(records)")}
+    with connection:
+        for name, kind in ADDED.items():
+            if present and name not in present:
+                connection.execute(f"ALTER TABLE records ADD COLUMN {name} {kind}")
+        connection.executescript(SCHEMA)
+        connection.execute(f"PRAGMA user_version = {VERSION}")
+    return connection
+
+
+def read_index(folder: Path) -> sqlite3.Connection:
+    """The index for reading. Raises RecordError if there is none, or one of another version."""
+    path = folder / NAME
+    if not path.is_file():
+        raise RecordError(f"{folder}: no records here ({NAME} is missing); name an archive folder")
+    try:
+        connection = sqlite3.connect(path.resolve().as_uri() + "?mode=ro", uri=True, timeout=2.0)
+        version = connection.execute("PRAGMA user_version").fetchone()[0]
+    except sqlite3.Error as error:
+        raise RecordError(f"{path}: not a readable index ({error})") from None
+    if version != VERSION:
+        connection.close()
+        raise RecordError(f"{path}: index of version {version}, needed {VERSION}; an engine that opens it brings an older one up to date")
+    connection.row_factory = sqlite3.Row
+    return connection
+
+
+def link(before: str, record_sha256: str) -> str:
+    """The chain with one more record."""
+    return hashlib.sha256(f"{before}{record_sha256}".encode()).hexdigest()
+
+
+def last_link(connection: sqlite3.Connection) -> str:
+    """The chain so far."""
+    for table in ("records", "let_go"):
+        row = connection.execute(f"SELECT chain FROM {table} ORDER BY inspection_id DESC LIMIT 1").fetchone()
+        if row is not None:
+            return row[0] or START
+    return START

@@ -1,0 +1,176 @@
+"""Writes records so that none is lost: files, fsync, index row, and only then may the verdict be seen."""
+
+import hashlib
+import sqlite3
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from station.archive.files import sync_folder, write_durable
+from station.archive.room import Disk, Room
+from station.archive.schema import SEARCHABLE_SCORE, last_link, link, open_index
+from station.domain import Frame, Inspection, Verdict
+from station.errors import ImageError, RecordError
+from station.filelock import FolderLock
+from station.imagefile import encode_png
+from station.records import Part, Provenance, Record, to_json
+from station.settings import ArchiveSettings
+
+INCOMING = "incoming.png"
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A frame on disk, durable, under a name that only its record makes valid."""
+
+    sha256: str
+    path: Path | None
+    """None: there was no room."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pending:
+    """A frame being written while it is judged."""
+
+    frame: Frame | None
+    picture: "Future[Picture] | None"
+
+
+class Archive:
+    """Keeper of one folder of records; one engine at a time."""
+
+    def __init__(self, settings: ArchiveSettings) -> None:
+        """Open or create the archive. Raises RecordError if the folder cannot be used."""
+        self._folder = settings.folder
+        self._stops_when_full = settings.when_full == "stop"
+        self._disk = Disk(settings)
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            self._lock = FolderLock(self._folder)
+        except BlockingIOError:
+            raise RecordError(f"{self._folder}: another engine keeps its records there; stop it or set archive.folder") from None
+        except OSError as error:
+            raise self._unusable(error) from None
+        try:
+            for left in self._folder.glob(f"{INCOMING}*"):
+                left.unlink()
+            self._index = open_index(self._folder)
+            self._chain = last_link(self._index)
+        except (OSError, sqlite3.Error, RecordError) as error:
+            self._lock.close()
+            raise error if isinstance(error, RecordError) else self._unusable(error) from None
+        self._encoder = ThreadPoolExecutor(1, "encode")
+
+    def _unusable(self, error: Exception) -> RecordError:
+        return RecordError(f"{self._folder}: records cannot be kept there ({error}); set archive.folder to a writable folder")
+
+    def close(self) -> None:
+        """Finish and close the index."""
+        self._encoder.shutdown(wait=True)
+        self._index.close()
+        self._lock.close()
+
+    def room(self) -> Room:
+        """Room on the disk."""
+        return self._disk.room()
+
+    def has_room(self) -> bool:
+        """Whether parts may be taken."""
+        return self.room() > Room.FULL or not self._stops_when_full
+
+    def begin(self, frame: Frame | None) -> Pending:
+        """Start to write the frame while it is being judged; an uncommitted one is gone with the next."""
+        return Pending(frame, None if frame is None else self._encoder.submit(self._store, frame))
+
+    def _store(self, frame: Frame) -> Picture:
+        png = encode_png(frame.image)
+        sha256 = hashlib.sha256(png).hexdigest()
+        if self.room() is Room.FULL:
+            return Picture(sha256, None)
+        path = self._folder / INCOMING
+        write_durable(path, png)
+        return Picture(sha256, path)
+
+    def commit(self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime) -> Record:
+        """Make the record durable and return it. Raises RecordError; then nothing is listed."""
+        try:
+            return self._commit(pending, inspection, part, provenance, now)
+        except (OSError, sqlite3.Error, ImageError, ValueError) as error:
+            if self._index.in_transaction:
+                self._index.rollback()
+            raise RecordError(f"{self._folder}: the record could not be written: {error}") from None
+
+    def mark_shown(self, inspection_id: int, shown: bool) -> None:
+        """Note whether the PLC was shown this verdict; NULL: the station stopped before it could tell. Raises RecordError."""
+        try:
+            with self._index:
+                self._index.execute("UPDATE records SET shown_to_plc = ? WHERE inspection_id = ?", (shown, inspection_id))
+        except sqlite3.Error as error:
+            raise RecordError(f"{self._folder}: record {inspection_id} could not be marked: {error}") from None
+
+    def _commit(self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime) -> Record:
+        row = self._index.execute("SELECT seq FROM sqlite_sequence WHERE name = 'records'").fetchone()
+        inspection_id = 1 + (row[0] if row else 0)
+        day = self._folder / f"{now:%Y-%m-%d}"
+        if not day.exists():
+            day.mkdir()
+            sync_folder(self._folder)
+        frame_file = sha256 = None
+        state = "none" if pending.frame is None else "kept"
+        if pending.picture is not None:
+            picture = pending.picture.result()
+            sha256 = picture.sha256
+            if picture.path is not None and (self.room() > Room.THIN or inspection.verdict is not Verdict.OK):
+                frame_file = f"{day.name}/{inspection_id:08d}.png"
+                picture.path.replace(self._folder / frame_file)
+            else:
+                state = "thinned"
+        record = Record(
+            inspection_id=inspection_id,
+            serial=part.serial,
+            trigger_id=part.trigger_id,
+            grabbed_at=now if pending.frame is None else pending.frame.grabbed_at,
+            source="" if pending.frame is None else pending.frame.source,
+            origin=part.origin,
+            frame_file=frame_file,
+            frame_sha256=sha256,
+            inspection=inspection,
+            provenance=provenance,
+            purpose=part.purpose,
+            chain_before=self._chain,
+        )
+        text = to_json(record)
+        record_file = f"{day.name}/{inspection_id:08d}.json"
+        write_durable(self._folder / record_file, text)
+        sync_folder(day)
+        self._list(record, record_file, hashlib.sha256(text).hexdigest(), state)
+        return record
+
+    def _list(self, record: Record, record_file: str, sha256: str, frame_state: str) -> None:
+        inspection = record.inspection
+        chain = link(self._chain, sha256)
+        worst = max((s.nok for s in inspection.scores), default=None)
+        found = [(record.inspection_id, i, s.nok) for i, s in enumerate(inspection.scores, start=1) if s.nok >= SEARCHABLE_SCORE]
+        values = {
+            "inspection_id": record.inspection_id,
+            "serial": record.serial,
+            "trigger_id": record.trigger_id,
+            "grabbed_at": record.grabbed_at.isoformat(),
+            "origin": record.origin,
+            "verdict": inspection.verdict,
+            "reason": inspection.reason,
+            "worst_score": worst,
+            "frame_file": record.frame_file,
+            "record_file": record_file,
+            "record_sha256": sha256,
+            "purpose": record.purpose,
+            "recipe": record.provenance.recipe,
+            "chain": chain,
+            "frame_state": frame_state,
+        }
+        with self._index:
+            marks = ", ".join(f":{name}" for name in values)
+            self._index.execute(f"INSERT INTO records ({', '.join(values)}) VALUES ({marks})", values)
+            self._index.executemany("INSERT INTO segments VALUES (?, ?, ?)", found)
+        self._chain = chain

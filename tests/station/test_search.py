@@ -1,0 +1,91 @@
+"""Finding records by what people know of them."""
+
+import sqlite3
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from station.__main__ import main
+from station.archive.reader import Wanted, find
+from station.archive.writer import Archive
+from station.domain import Inspection, Origin, Reason
+from station.records import Part
+from station.settings import ArchiveSettings
+from tests.parts import nok_inspection, ok_inspection, provenance
+
+NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
+ROOMY = {"min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("archive")
+    archive = Archive(ArchiveSettings(folder=made, **ROOMY))
+    for number in range(30):
+        inspection = nok_inspection() if number % 5 == 3 else ok_inspection()
+        if number == 7:
+            inspection = Inspection.error(Reason.NO_FRAME)
+        part = Part(f"LOT{number // 10}-{number:03d}", number + 1, Origin.SIMULATED)
+        archive.commit(archive.begin(None), inspection, part, provenance(), NOON + timedelta(minutes=number))
+    archive.close()
+    return made
+
+
+@pytest.mark.parametrize(
+    ("wanted", "numbers"),
+    [
+        (Wanted(), list(range(1, 31))),
+        (Wanted(serial="LOT1-013"), [14]),
+        (Wanted(serial="LOT2*"), list(range(21, 31))),
+        (Wanted(serial="LOT*", limit=3, newest_first=True), [30, 29, 28]),
+        (Wanted(since=NOON + timedelta(minutes=10), until=NOON + timedelta(minutes=12)), [11, 12]),
+        (Wanted(verdict="ERROR"), [8]),
+        (Wanted(reason=str(Reason.NO_FRAME)), [8]),
+        (Wanted(verdict="NOK"), [4, 9, 14, 19, 24, 29]),
+        (Wanted(segment=4, min_score=0.5), [4, 9, 14, 19, 24, 29]),
+        (Wanted(segment=5, min_score=0.5), []),
+        (Wanted(min_score=0.5), [4, 9, 14, 19, 24, 29]),
+        (Wanted(serial="nobody"), []),
+    ],
+)
+def test_records_are_found(wanted: Wanted, numbers: list[int], folder: Path) -> None:
+    assert [row.inspection_id for row in find(folder, wanted)] == numbers
+
+
+def test_people_find_by_options(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["records", "list", str(folder), "--segment", "4", "--score", "0.5", "--last", "2", "--since", "2026-11-22T12:00"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == ["29", "24"]
+    with pytest.raises(SystemExit):
+        main(["records", "list", str(folder), "--since", "yesterday"])
+    assert "is no time" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [
+        Wanted(serial="LOT1-013"),
+        Wanted(serial="LOT2*"),
+        Wanted(since=NOON, until=NOON + timedelta(minutes=5)),
+        Wanted(segment=4, min_score=0.9),
+        Wanted(verdict="NOK", limit=100),
+    ],
+)
+def test_every_search_goes_by_an_index(wanted: Wanted, folder: Path) -> None:
+    """Never a walk through all records, which a hundred thousand would make slow."""
+    seen: list[str] = []
+
+    class Told(sqlite3.Connection):
+        def execute(self, sql: str, *values: object) -> sqlite3.Cursor:
+            if sql.startswith("SELECT r."):
+                plan = super().execute(f"EXPLAIN QUERY PLAN {sql}", *values).fetchall()  # type: ignore[arg-type]
+                seen.extend(row[3] for row in plan)
+            return super().execute(sql, *values)  # type: ignore[arg-type]
+
+    real = sqlite3.connect
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sqlite3, "connect", lambda *a, **k: real(*a, **{**k, "factory": Told}))
+        find(folder, wanted)
+    assert seen
+    assert not [step for step in seen if step.startswith("SCAN")], seen
