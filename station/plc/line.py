@@ -79,6 +79,8 @@ class ModbusLine:
         """To do once the PLC can read what was stepped."""
         self._lost_s: float | None = None
         self._lost_said = ""
+        self._values_before = self._values(0.0)
+        """Status window as published last."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._wake: asyncio.Event | None = None
@@ -200,8 +202,10 @@ class ModbusLine:
                 await self._wire.publish(pack_window(STATUS_START, STATUS_WORDS, values))
             except LineError as error:
                 self._link_lost(error, now_s)
+                self._bus(time.time(), self._command, self._values_before)
                 return False
             self._lost_s = None
+        self._values_before = values
         self._published = {name: number(values, name) for name in self._published}
         self._bus(time.time(), self._command, values)
         after, self._after = self._after, []

@@ -149,7 +149,7 @@ def test_a_master_never_passes_and_asks_for_the_check() -> None:
     assert not plc.v.PartOk
 
 
-@pytest.mark.parametrize(("answers", "said"), [(0, "station not READY"), (3, "no result inside the window")])
+@pytest.mark.parametrize(("answers", "said"), [(0, "station not READY, or without heartbeat"), (3, "no result inside the window")])
 def test_a_window_that_passes_refuses_and_frees_the_block(answers: int, said: str) -> None:
     plc = Plc()
     plc.cycle(window())

@@ -54,7 +54,7 @@ POINTS: tuple[tuple[str, str], ...] = (
 )
 """The acceptance rule: what is said if a point does not hold, and the point. OK passes only if all hold in one read."""
 NOT_READY, NO_RESULT = len(POINTS) + 1, len(POINTS) + 2
-REFUSALS = ("", *(name for name, _ in POINTS), "station not READY", "no result inside the window")
+REFUSALS = ("", *(name for name, _ in POINTS), "station not READY, or without heartbeat", "no result inside the window")
 """What Refusal means."""
 
 
@@ -85,7 +85,9 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("output", "Busy", "BOOL", "a part is in work"),
     Variable("output", "Refusal", "UINT", "first point that did not hold, 0: none"),
     Variable("output", "Info", RECORD, "the status window, decoded"),
-    Variable("local", "State", "UINT", "0 idle, 10 wait for READY, 20 number written, 30 triggered, 40 in work, 50 acknowledged"),
+    Variable(
+        "local", "State", "UINT", "0 idle, 10 wait for READY and a heartbeat, 20 number written, 30 triggered, 40 in work, 50 acknowledged"
+    ),
     Variable("local", "TriggerId", "UINT", "of the part in the nest"),
     Variable("local", "BeatKnown", "BOOL", ""),
     Variable("local", "BeatEver", "BOOL", ""),
@@ -146,7 +148,7 @@ CASE State OF
         State := 10;
     END_IF;
 10:
-    IF Fresh AND {bit("STATUS", Status.READY)} THEN
+    IF Fresh AND BeatFresh AND {bit("STATUS", Status.READY)} THEN
         TriggerId := (TriggerId MOD 65535) + 1;
         IF TriggerId = WORD_TO_UINT({word("ACK_TRIGGER_ID")}) THEN
             TriggerId := (TriggerId MOD 65535) + 1;
