@@ -50,5 +50,5 @@ $(VENV)/.demo: $(VENV)/.system pyproject.toml constraints.txt
 
 $(VENV)/.dev: $(VENV)/.demo pyproject.toml constraints.txt deploy/system.sh
 	deploy/system.sh test
-	$(PIP) -e '.[synth,train,tls,dev]'
+	$(PIP) -e '.[synth,train,tls,pdf,dev]'
 	touch $@

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # System libraries that the packages need, through apt, only what is missing. Usage: system.sh [test]
-# test: also the Modbus peers that the tests talk to, and the compiler that builds them.
+# test: also what PDF reports need, the Modbus peers that the tests talk to, and the compiler that builds them.
 set -euo pipefail
 
 # library file -> Debian and Ubuntu package: Qt's xcb platform, OpenGL stubs, pylon, and LLVM for Mitsuba
@@ -33,6 +33,9 @@ done
 python3 -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
 [ -e /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf ] || packages+=(fonts-dejavu-core)
 if [ "${1:-}" = test ]; then
+    grep -qF libpango-1.0.so.0 <<<"$known" || packages+=(libpango-1.0-0)
+    grep -qF libpangoft2-1.0.so.0 <<<"$known" || packages+=(libpangoft2-1.0-0)
+    grep -qF libharfbuzz-subset.so.0 <<<"$known" || packages+=(libharfbuzz-subset0)
     command -v mbpoll >/dev/null || packages+=(mbpoll)
     command -v gcc >/dev/null || packages+=(gcc libc6-dev)
     [ -e /usr/include/modbus/modbus.h ] || packages+=(libmodbus-dev)

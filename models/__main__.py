@@ -263,10 +263,10 @@ def _first_day(arguments: argparse.Namespace) -> int:
     from models.first_day import first_day
     from models.reference import make_reference
     from station.classify.drift import write_reference
-    from station.replay import image_files
+    from station.replay.files import sources
 
     inspector = _inspector(arguments)
-    files = image_files(arguments.paths)
+    files = [source.path for source in sources(arguments.paths)]
     with _progress("judging", len(files)) as advance:
         found = first_day(files, inspector, inspector.card.novelty_limit, advance)
     if arguments.reference is not None and found.good:

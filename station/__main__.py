@@ -3,13 +3,11 @@
 import argparse
 import asyncio
 import logging
-import os
 import signal
 import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from station import __version__
 from station.errors import WeldgateError
@@ -48,10 +46,14 @@ def _parser() -> argparse.ArgumentParser:
     add("run", _run, "start engine and panel")
     add("engine", _engine, "run the inspection, without a window")
     add("panel", _panel, "open the operator's window")
-    replay = add("replay", _replay, "judge recorded images again: same code, no PLC", settings=False)
-    replay.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="images or folders")
+    replay = add("replay", _replay, "judge recorded images or records again: same code, no PLC", settings=False)
+    replay.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="images, folders, archives: with these the line is compared")
     replay.add_argument("-c", "--settings", type=Path, metavar="FILE", help="settings file (default: the shipped limits and model)")
-    replay.add_argument("--json", type=Path, metavar="FILE", help="write all results as JSON")
+    replay.add_argument("--recipe", type=int, default=1, metavar="N", help="recipe of the settings (default: %(default)s)")
+    replay.add_argument("--model", type=Path, metavar="FILE", help="another classifier")
+    replay.add_argument("--um-per-px", type=float, default=13.0, metavar="UM", help="scale of the images (default: %(default)s)")
+    replay.add_argument("--processes", type=int, metavar="N", help="default: one for each core")
+    replay.add_argument("--json", type=Path, metavar="FILE", help="write all results as JSON; an interrupted run goes on where it stopped")
     replay.add_argument("--csv", type=Path, metavar="FILE", help="write a table")
     add("check", _check, "say what is wrong with settings, model, archive, camera and port, and what to do")
     add_commands(commands.add_parser("records", help="list, verify, prune and export the records of an archive; edges on the bus"))
@@ -112,33 +114,9 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _replay(arguments: argparse.Namespace) -> int:
-    from rich.progress import track
+    from station.replay.command import run_replay
 
-    from station.recipe import load_inspector
-    from station.replay import image_files, judge, write_csv, write_json
-    from station.settings import for_images, load
-
-    files = image_files(arguments.paths)
-    settings = for_images(SHIPPED) if arguments.settings is None else load(arguments.settings)
-    for target in (arguments.json, arguments.csv):
-        if target is not None and (target.is_dir() or not os.access(target.resolve().parent, os.W_OK)):
-            raise WeldgateError(f"{target}: cannot be written there; name a file in a writable folder")
-    inspector, _ = load_inspector(settings)
-    base = Path(os.path.commonpath([f.resolve().parent for f in files]))
-    entries: dict[str, dict[str, Any]] = {}
-    bad = 0
-    for file in track(files, description="replay", disable=not sys.stderr.isatty(), transient=True):
-        entries[file.resolve().relative_to(base).as_posix()], problem = judge(inspector, file)
-        if problem is not None:
-            bad += 1
-            print(f"weldgate: {problem}", file=sys.stderr)
-    if arguments.json is not None:
-        write_json(arguments.json, entries)
-    if arguments.csv is not None:
-        write_csv(arguments.csv, entries)
-    verdicts = [e["verdict"] for e in entries.values()]
-    print(f"{len(files)} images: {verdicts.count('OK')} OK, {verdicts.count('NOK')} NOK, {verdicts.count('ERROR')} ERROR")
-    return 1 if bad else 0
+    return run_replay(arguments, SHIPPED)
 
 
 def _check(arguments: argparse.Namespace) -> int:

@@ -1,9 +1,11 @@
 """Image files to grey pictures and back, lossless."""
 
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from station.domain import Image
 from station.errors import ImageError
@@ -18,6 +20,14 @@ def read_image(path: Path) -> Image:
 
     Raises ImageError naming the file and what is wrong with it.
     """
+    return read_marked(path)[0]
+
+
+def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
+    """The same, and what was lost before: compression, colour, depth. Raises ImageError."""
+    warnings = []
+    if path.suffix.lower() in (".jpg", ".jpeg"):
+        warnings.append("JPEG: its compression changes scores; record lossless")
     try:
         if path.stat().st_size > MAX_BYTES:
             raise ImageError(f"{path}: larger than 512 MiB; not a frame")
@@ -36,11 +46,17 @@ def read_image(path: Path) -> Image:
         raise ImageError(f"{path}: pixels are {image.dtype}; 8 or 16 bit is needed")
     if max(image.shape[:2]) > MAX_SIDE_PX:
         raise ImageError(f"{path}: {image.shape[1]} x {image.shape[0]} px; at most {MAX_SIDE_PX} px a side")
+    if image.ndim == 3 and image.shape[2] >= 3 and not _grey(image):
+        warnings.append("colour: only its brightness is judged")
     if image.ndim == 3:
         image = image[:, :, 0] if image.shape[2] < 3 else cv2.cvtColor(np.ascontiguousarray(image[:, :, :3]), cv2.COLOR_BGR2GRAY)
     if image.dtype == np.uint16:
         image = np.asarray(image // 256, np.uint8)
-    return np.ascontiguousarray(image)
+    return np.ascontiguousarray(image), tuple(warnings)
+
+
+def _grey(image: NDArray[Any]) -> bool:
+    return bool((image[..., 0] == image[..., 1]).all() and (image[..., 1] == image[..., 2]).all())
 
 
 def encode_png(image: Image) -> bytes:

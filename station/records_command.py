@@ -29,6 +29,10 @@ def add_commands(records: argparse.ArgumentParser) -> None:
     export.add_argument("target", type=Path, metavar="TARGET", help="file, or folder for dataset")
     export.add_argument("--format", choices=("csv", "json", "parquet", "dataset", "dfq"), default="csv", help="default: %(default)s")
     _search_options(export)
+    report = add("report", _report, "write a report: yield, findings by angle, trends, NOK parts, who judged")
+    report.add_argument("target", type=Path, metavar="FILE", help=".html, with everything in it, or .pdf")
+    report.add_argument("--title", default="weldgate: report", help="default: %(default)s")
+    _search_options(report)
     add("bus", _bus, "print the edges on the PLC bus, and what was against the rules")
 
 
@@ -103,6 +107,22 @@ def _export(arguments: argparse.Namespace) -> int:
         print(f"weldgate: {path}: {problem}", file=sys.stderr)
     print(arguments.target)
     return 1 if bad else 0
+
+
+def _report(arguments: argparse.Namespace) -> int:
+    from station.report.page import report
+    from station.report.pdf import write_pdf
+
+    if not arguments.target.resolve().parent.is_dir() or arguments.target.is_dir():
+        raise RecordError(f"{arguments.target}: cannot be written there; name a file in an existing folder")
+    entries = sorted(read_records(arguments.folder, _wanted(arguments)), key=lambda e: e.row.inspection_id)
+    page = report(entries, arguments.folder, arguments.title)
+    if arguments.target.suffix.lower() == ".pdf":
+        write_pdf(page, arguments.target)
+    else:
+        arguments.target.write_text(page, encoding="utf-8")
+    print(arguments.target)
+    return 1 if any(entry.problem is not None for entry in entries) else 0
 
 
 def _bus(arguments: argparse.Namespace) -> int:

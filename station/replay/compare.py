@@ -1,0 +1,86 @@
+"""Two judgements of the same parts: which verdicts flip, both ways."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from station.archive.reader import read_record
+from station.domain import Verdict
+from station.errors import RecordError
+from station.records import Provenance, Record
+from station.replay.files import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Flip:
+    """A part that is judged otherwise now."""
+
+    name: str
+    before: str
+    now: str
+    worst_before: float | None
+    worst_now: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What the line said against what is said now."""
+
+    compared: int
+    same_judge: int
+    """Records made with the same networks, limits and settings: these must agree to the bit."""
+    not_alike: tuple[str, ...]
+    """Of these, the ones that do not."""
+    flips: tuple[Flip, ...]
+
+    def lines(self) -> list[str]:
+        """For people."""
+        answer = [f"compared with the line: {self.compared} parts, {len(self.flips)} verdicts flip"]
+        for before, now in (("NOK", "OK"), ("OK", "NOK")):
+            flipped = [f for f in self.flips if (f.before, f.now) == (before, now)]
+            answer.append(f"  {before} to {now}: {len(flipped)}" + ("" if before == "OK" else ", would be released"))
+            answer += [f"    {f.name}: worst score {_score(f.worst_before)} to {_score(f.worst_now)}" for f in flipped]
+        others = [f for f in self.flips if "ERROR" in (f.before, f.now)]
+        answer += [f"  {f.name}: {f.before} to {f.now}" for f in others]
+        if self.same_judge:
+            alike = self.same_judge - len(self.not_alike)
+            answer.append(f"same networks, limits and settings: {self.same_judge}, of which {alike} agree to the bit")
+        return answer
+
+
+def compare(sources: Sequence[Source], entries: Mapping[str, dict[str, Any]], judge: Provenance) -> Comparison:
+    """Entries of frames that come from an archive against their records. Raises RecordError if a record cannot be read."""
+    same, not_alike, flips, compared = 0, [], [], 0
+    for source in sources:
+        if source.row is None:
+            continue
+        record, now = _record(source), entries[source.name]
+        compared += 1
+        scores, again = [s.nok for s in record.inspection.scores], [s for s in now["segments"] if s is not None]
+        if _who(record.provenance) == _who(judge) and record.verdict is not Verdict.ERROR:
+            same += 1
+            if scores != again or str(record.verdict) != now["verdict"]:
+                not_alike.append(source.name)
+        if str(record.verdict) != now["verdict"]:
+            worst = (max(scores, default=None), max(again, default=None))
+            flips.append(Flip(source.name, str(record.verdict), now["verdict"], *worst))
+    return Comparison(compared, same, tuple(not_alike), tuple(flips))
+
+
+def _record(source: Source) -> Record:
+    if source.row is None:
+        raise RecordError(f"{source.path}: belongs to no record")
+    folder = Path(str(source.path)[: -len(str(source.row.frame_file))])
+    record, problem = read_record(folder, source.row)
+    if record is None:
+        raise RecordError(f"{folder / source.row.record_file}: {problem}")
+    return record
+
+
+def _who(p: Provenance) -> tuple[object, ...]:
+    return p.model_hash, p.ring_model_hash, p.hole_threshold, p.missing_threshold
+
+
+def _score(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3f}"

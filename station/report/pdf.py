@@ -1,0 +1,19 @@
+"""The page as PDF; the only file that imports WeasyPrint."""
+
+from pathlib import Path
+
+from station.errors import RecordError
+
+
+def write_pdf(page: str, target: Path) -> None:
+    """Raises RecordError if WeasyPrint or its system library Pango is not installed, OSError."""
+    try:
+        from weasyprint import HTML
+    except ImportError:
+        raise RecordError("PDF needs the package weasyprint: pip install 'weldgate[pdf]'; or print the HTML page in a browser") from None
+    except OSError as error:
+        said = str(error).splitlines()[0]
+        raise RecordError(
+            f"PDF needs the system library Pango ({said}); install libpango-1.0-0, or print the HTML page in a browser"
+        ) from None
+    HTML(string=page).write_pdf(target)
