@@ -100,6 +100,9 @@ class Cycle:
         except WeldgateError as error:
             log.error("recipe %d was not loaded: %s", number, error)
             return False
+        except Exception:  # the recipe before is still in use
+            log.exception("recipe %d was not loaded", number)
+            return False
         self._loaded = loaded
         self._watch.use(loaded)
         self._line.checked_in(self._health())

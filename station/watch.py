@@ -73,7 +73,11 @@ class Watch:
         wait_s = AGAIN_S if self.self_test_failed else self._self_test_s
         if self._self_test is None or time.monotonic() - self._tested_s < wait_s:
             return
-        failed = not self._self_test.passes()
+        try:
+            failed = not self._self_test.passes()
+        except Exception:
+            log.exception("the self-test ended with a fault")
+            failed = True
         self._tested_s = time.monotonic()
         if failed and not self.self_test_failed:
             log.error("self-test failed: the stored frame is judged differently; restart the station, check the PC's memory")

@@ -38,6 +38,8 @@ GRACE_S = 2.0
 ANSWER_S = 5.0
 """Beyond the deadline a published result is answered, one way or the other, within this time."""
 
+Offer = tuple[Result, "Future[bool]"]
+"""A result, and where to say whether the PLC was shown it."""
 Bus = Callable[[float, dict[str, Value], dict[str, Value]], None]
 """Hears command and status window after every step, with the epoch time."""
 
@@ -73,7 +75,7 @@ class ModbusLine:
         self._published: dict[str, int] = {"STATUS": 0, "OFFLINE_REASON": int(Offline.STARTING), "HEARTBEAT": 0}
         self._command = unpack_window(COMMAND_START, [0xFF] + [0] * (COMMAND_WORDS - 1))
         self._exposed: int | None = None
-        self._offered: tuple[Result, Future[bool]] | None = None
+        self._offered: Offer | None = None
         self._done: tuple[int, bool] | None = None
         self._after: list[Callable[[], None]] = []
         """To do once the PLC can read what was stepped."""
@@ -192,10 +194,11 @@ class ModbusLine:
             self._link_lost(error, now_s)
         if self._lost_s is not None and not link and now_s - self._lost_s < (self._times.plc_heartbeat_s or GRACE_S):
             return False
-        outcome = step(self._state, self._inputs(now_s, link), now_s, self._times)
+        offered, self._offered = self._offered, None  # taken once: the cycle may offer the next at any moment
+        outcome = step(self._state, self._inputs(now_s, link, None if offered is None else offered[0]), now_s, self._times)
         self._count(outcome.state)
         self._state = outcome.state
-        self._plan(outcome)
+        self._plan(outcome, offered)
         values = self._values(now_s)
         if link:
             try:
@@ -213,7 +216,7 @@ class ModbusLine:
             act()
         return outcome.again
 
-    def _inputs(self, now_s: float, link: bool) -> Inputs:
+    def _inputs(self, now_s: float, link: bool, result: Result | None) -> Inputs:
         command = self._command
         exposed, self._exposed = self._exposed, None
         done, self._done = self._done, None
@@ -226,16 +229,16 @@ class ModbusLine:
             health=self._health,
             health_age_s=now_s - self._health_s,
             exposure_done_for=exposed,
-            result=None if self._offered is None else self._offered[0],
+            result=result,
             arg=number(command, "ARG"),
             command_done=done,
             link=link,
             link_was_lost=self._lost_s is not None,
         )
 
-    def _plan(self, outcome: Step) -> None:
-        if self._offered is not None:
-            (result, answer), self._offered = self._offered, None
+    def _plan(self, outcome: Step, offered: "Offer | None") -> None:
+        if offered is not None:
+            result, answer = offered
             self._after.append(lambda: answer.set_result(not outcome.refused and self._state.result is result))
         if outcome.start is not None:
             start = outcome.start
