@@ -26,6 +26,8 @@ class Provenance:
     hole_threshold: float
     missing_threshold: float
     recipe: int = 1
+    limits_hash: str = ""
+    """SHA-256 of the settings of weld and quality gate: what else a verdict depends on."""
 
 
 @dataclass(frozen=True, slots=True)

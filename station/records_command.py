@@ -23,7 +23,7 @@ def add_commands(records: argparse.ArgumentParser) -> None:
     _search_options(add("list", _list, "list records, all or those that are looked for"))
     add("verify", _verify, "name missing, altered and taken out records")
     prune = add("prune", _prune, "let go what the settings do not keep any longer; the engine does so every hour")
-    prune.add_argument("-c", "--settings", type=Path, metavar="FILE", help="settings file (default: the default times)")
+    prune.add_argument("-c", "--settings", type=Path, default=Path("station.toml"), metavar="FILE", help="default: %(default)s")
     prune.add_argument("--dry-run", action="store_true", help="say what would go, change nothing")
     export = add("export", _export, "write records in another form")
     export.add_argument("target", type=Path, metavar="TARGET", help="file, or folder for dataset")
@@ -57,7 +57,7 @@ def _time(text: str) -> datetime:
 
 def _wanted(a: argparse.Namespace) -> Wanted:
     score = 0.05 if a.segment is not None and a.score is None else a.score
-    return Wanted(a.serial, a.since, a.until, a.verdict, a.reason, a.segment, score, a.last is not None, a.last)
+    return Wanted(None, a.serial, a.since, a.until, a.verdict, a.reason, a.segment, score, a.last is not None, a.last)
 
 
 def _list(arguments: argparse.Namespace) -> int:
@@ -87,9 +87,9 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 def _prune(arguments: argparse.Namespace) -> int:
     from station.archive.prune import prune
-    from station.settings import KeepSettings, load
+    from station.settings import load
 
-    keep = KeepSettings() if arguments.settings is None else load(arguments.settings).archive.keep
+    keep = load(arguments.settings).archive.keep
     done = prune(arguments.folder, keep, datetime.now(UTC), arguments.dry_run)
     verb = "would go" if arguments.dry_run else "let go"
     print(f"{verb}: {done.frames} pictures, {done.records} records, {done.bytes / 1e6:.1f} MB")

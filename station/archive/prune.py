@@ -20,6 +20,7 @@ STEP = 50
 """Records in one transaction."""
 EVERY_S = 3600.0
 GIB = 1 << 30
+STRANGE = timedelta(days=7)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,23 +36,28 @@ class Pruned:
 
 
 def prune(folder: Path, keep: KeepSettings, now: datetime, dry: bool = False, stop: threading.Event | None = None) -> Pruned:
-    """Let go what is older than `keep` says, and the oldest pictures beyond the quota. Raises RecordError."""
+    """Let go what is older than `keep` says, and the oldest pictures beyond the quota.
+
+    Nothing goes while the newest record is more than a week old: then rather the clock is wrong. Raises RecordError.
+    """
     if not (folder / NAME).is_file():
         raise RecordError(f"{folder}: no records here ({NAME} is missing); name an archive folder")
-    stop = stop or threading.Event()
     try:
-        with closing(sqlite3.connect(folder / NAME, timeout=5.0)) as index:
+        with closing(sqlite3.connect(folder / NAME, timeout=5.0, isolation_level=None)) as index:
+            newest = index.execute("SELECT MAX(grabbed_at) FROM records").fetchone()[0]
+            if newest is None or now - datetime.fromisoformat(newest) > STRANGE:
+                return Pruned()
+            work = _Work(folder, index, dry, stop or threading.Event())
+            work.remove_left()
             done = Pruned()
-            for condition, values in _old_frames(keep, now):
-                done += _let_frames_go(folder, index, condition, values, None, dry, stop)
-            excess = int(_frame_bytes(folder, index) - (done.bytes if dry else 0) - keep.quota_gib * GIB)
-            if excess > 0:
-                for condition in ("verdict = 'OK'", "verdict = 'ERROR'", "1"):
-                    more = _let_frames_go(folder, index, condition, (), excess, dry, stop)
+            for condition, days in _old_frames(keep):
+                done += work.let_frames_go(condition, _first_young(index, now - timedelta(days=days)), None)
+            excess = work.kept_bytes() - keep.quota_gib * GIB
+            for condition in ("verdict = 'OK'", "verdict = 'ERROR'", "1"):
+                if excess > 0:
+                    more = work.let_frames_go(condition, 1 << 62, excess)
                     done, excess = done + more, excess - more.bytes
-                    if excess <= 0:
-                        break
-            return done + _let_records_go(folder, index, (now - timedelta(days=keep.record_days)).isoformat(), dry, stop)
+            return done + work.let_records_go(_first_young(index, now - timedelta(days=keep.record_days)))
     except (sqlite3.Error, OSError) as error:
         raise RecordError(f"{folder}: could not be pruned ({error})") from None
 
@@ -61,85 +67,111 @@ def sampled(inspection_id: int, share: float) -> bool:
     return int.from_bytes(hashlib.sha256(str(inspection_id).encode()).digest()[:4], "big") < share * 2**32
 
 
-def _old_frames(keep: KeepSettings, now: datetime) -> list[tuple[str, tuple[str, ...]]]:
-    ages = (("OK", keep.ok_days), ("NOK", keep.nok_days), ("ERROR", keep.error_days))
-    found = [("verdict = ? AND grabbed_at < ?", (verdict, (now - timedelta(days=days)).isoformat())) for verdict, days in ages]
-    early = (now - timedelta(days=keep.ok_all_days)).isoformat()
-    return [*found, (f"verdict = 'OK' AND grabbed_at < ? AND NOT sampled(inspection_id, {float(keep.ok_share)})", (early,))]
+def _old_frames(keep: KeepSettings) -> list[tuple[str, int]]:
+    """Which pictures go after how many days."""
+    return [
+        (f"verdict = 'OK' AND NOT sampled(inspection_id, {float(keep.ok_share)})", keep.ok_all_days),
+        ("verdict = 'OK'", keep.ok_days),
+        ("verdict = 'NOK'", keep.nok_days),
+        ("verdict = 'ERROR'", keep.error_days),
+    ]
 
 
-def _let_frames_go(
-    folder: Path,
-    index: sqlite3.Connection,
-    condition: str,
-    values: tuple[str, ...],
-    enough_bytes: int | None,
-    dry: bool,
-    stop: threading.Event,
-) -> Pruned:
-    """Mark a step of pictures as pruned, then remove the files: a stop in between leaves files that the next run removes."""
-    index.create_function("sampled", 2, sampled, deterministic=True)
-    kept = f"frame_state = 'kept' AND inspection_id > ? AND {condition}"
-    query = f"SELECT inspection_id, frame_file FROM records WHERE {kept} ORDER BY 1 LIMIT {STEP}"
-    done, after = Pruned(), 0
-    while not stop.is_set() and (enough_bytes is None or done.bytes < enough_bytes):
-        rows = index.execute(query, (after, *values)).fetchall()
-        if not rows:
-            break
-        chosen = []
-        for number, name in rows:
-            if enough_bytes is not None and done.bytes >= enough_bytes:
+def _first_young(index: sqlite3.Connection, when: datetime) -> int:
+    """Number of the first record that is not older: those before it are, whatever a wrong clock wrote into single ones."""
+    row = index.execute("SELECT MIN(inspection_id) FROM records WHERE grabbed_at >= ?", (when.isoformat(),)).fetchone()
+    return 1 << 62 if row[0] is None else int(row[0])
+
+
+class _Work:
+    """One run over an index. What goes is written down before it is removed, so that a stop in between leaves nothing behind."""
+
+    def __init__(self, folder: Path, index: sqlite3.Connection, dry: bool, stop: threading.Event) -> None:
+        self._folder, self._index, self._dry, self._stop = folder, index, dry, stop
+        self._gone: set[int] = set()
+        """Numbers whose pictures went in this run."""
+        index.create_function("sampled", 2, sampled, deterministic=True)
+
+    def remove_left(self) -> None:
+        """Files that a run before wrote down and did not come to remove."""
+        if not self._dry:
+            for (name,) in self._index.execute("SELECT name FROM to_remove").fetchall():
+                self._remove(name)
+
+    def kept_bytes(self) -> int:
+        """Of all pictures that stay."""
+        rows = self._index.execute("SELECT inspection_id, frame_file FROM records WHERE frame_state = 'kept' AND frame_file IS NOT NULL")
+        return sum(_size(self._folder / name) for number, name in rows if number not in self._gone)
+
+    def let_frames_go(self, condition: str, before: int, enough_bytes: float | None) -> Pruned:
+        """Pictures of records before a number, the oldest first, until there are enough."""
+        done, after = Pruned(), 0
+        query = (
+            "SELECT inspection_id, frame_file FROM records WHERE frame_state = 'kept' AND frame_file IS NOT NULL "
+            f"AND inspection_id > ? AND inspection_id < ? AND {condition} ORDER BY 1 LIMIT {STEP}"
+        )
+        while not self._stop.is_set() and (enough_bytes is None or done.bytes < enough_bytes):
+            self._begin()
+            rows = self._index.execute(query, (after, before)).fetchall()
+            chosen = []
+            for number, name in rows:
+                after = number
+                if number in self._gone or (enough_bytes is not None and done.bytes >= enough_bytes):
+                    continue
+                chosen.append((number, name))
+                done += Pruned(1, 0, _size(self._folder / name))
+            self._gone |= {number for number, _ in chosen}
+            if not self._dry:
+                marks = [(number,) for number, _ in chosen]
+                self._index.executemany("UPDATE records SET frame_state = 'pruned' WHERE inspection_id = ?", marks)
+            self._commit([name for _, name in chosen])
+            if not rows:
                 break
-            chosen.append((number, folder / name))
-            done += Pruned(1, 0, _size(folder / name))
-        after = chosen[-1][0]
-        if not dry:
-            with index:
-                index.executemany("UPDATE records SET frame_state = 'pruned' WHERE inspection_id = ?", [(number,) for number, _ in chosen])
-            for _, path in chosen:
-                path.unlink(missing_ok=True)
-    return done
+        return done
 
-
-def _let_records_go(folder: Path, index: sqlite3.Connection, before: str, dry: bool, stop: threading.Event) -> Pruned:
-    """The oldest records, as long as they are old: the rest of the chain begins where they end."""
-    done, after = Pruned(), 0
-    while not stop.is_set():
-        rows = index.execute(
-            "SELECT inspection_id, record_file, frame_file, chain, grabbed_at < ? FROM records "
-            f"WHERE inspection_id > ? ORDER BY 1 LIMIT {STEP}",
-            (before, after),
-        ).fetchall()
-        old = []
-        for row in rows:
-            if not row[4]:
+    def let_records_go(self, before: int) -> Pruned:
+        """The records before a number: the rest of the chain begins where they end."""
+        done, after = Pruned(), 0
+        while not self._stop.is_set():
+            self._begin()
+            rows = self._index.execute(
+                "SELECT inspection_id, record_file, frame_file, chain FROM records "
+                f"WHERE inspection_id > ? AND inspection_id < ? ORDER BY 1 LIMIT {STEP}",
+                (after, before),
+            ).fetchall()
+            names = [row[1] for row in rows] + [row[2] for row in rows if row[2] is not None and row[0] not in self._gone]
+            done += Pruned(0, len(rows), sum(_size(self._folder / name) for name in names))
+            if rows and not self._dry:
+                last, marks = rows[-1], [(row[0],) for row in rows]
+                self._index.execute("DELETE FROM let_go")
+                self._index.execute("INSERT INTO let_go VALUES (?, ?)", (last[0], last[3] or START))
+                self._index.executemany("DELETE FROM segments WHERE inspection_id = ?", marks)
+                self._index.executemany("DELETE FROM records WHERE inspection_id = ?", marks)
+            self._commit(names)
+            if not rows:
                 break
-            old.append(row)
-        if not old:
-            break
-        after = old[-1][0]
-        paths = [folder / name for row in old for name in (row[1], row[2]) if name is not None]
-        done += Pruned(0, len(old), sum(_size(path) for path in paths))
-        if not dry:
-            with index:
-                index.execute("DELETE FROM let_go")
-                index.execute("INSERT INTO let_go VALUES (?, ?)", (after, old[-1][3] or START))
-                index.executemany("DELETE FROM segments WHERE inspection_id = ?", [(row[0],) for row in old])
-                index.executemany("DELETE FROM records WHERE inspection_id = ?", [(row[0],) for row in old])
-            for path in paths:
-                path.unlink(missing_ok=True)
-            for day in {path.parent for path in paths}:
-                if day.is_dir() and not any(day.iterdir()):
-                    day.rmdir()
-                    sync_folder(folder)
-        if len(old) < len(rows) or len(rows) < STEP:
-            break
-    return done
+            after = rows[-1][0]
+        return done
 
+    def _begin(self) -> None:
+        self._index.execute("BEGIN" if self._dry else "BEGIN IMMEDIATE")
 
-def _frame_bytes(folder: Path, index: sqlite3.Connection) -> int:
-    names = index.execute("SELECT frame_file FROM records WHERE frame_state = 'kept' AND frame_file IS NOT NULL")
-    return sum(_size(folder / name) for (name,) in names)
+    def _commit(self, names: list[str]) -> None:
+        if self._dry:
+            self._index.execute("ROLLBACK")
+            return
+        self._index.executemany("INSERT INTO to_remove VALUES (?)", [(name,) for name in names])
+        self._index.execute("COMMIT")
+        for name in names:
+            self._remove(name)
+
+    def _remove(self, name: str) -> None:
+        path = self._folder / name
+        path.unlink(missing_ok=True)
+        if path.parent.is_dir() and path.parent != self._folder and not any(path.parent.iterdir()):
+            path.parent.rmdir()
+            sync_folder(self._folder)
+        self._index.execute("DELETE FROM to_remove WHERE name = ?", (name,))
 
 
 def _size(path: Path) -> int:
@@ -171,4 +203,6 @@ class Housekeeping:
                     log.info("let go: %d pictures, %d records, %.1f GB", done.frames, done.records, done.bytes / 1e9)
             except RecordError as error:
                 log.error("%s", error)
+            except Exception:  # the thread must live: without it the disk fills
+                log.exception("pruning ended with a fault")
             self._stop.wait(EVERY_S)

@@ -2,6 +2,7 @@
 
 import hashlib
 import sqlite3
+import time
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import dataclass
@@ -14,11 +15,15 @@ from station.archive.schema import START, link, read_index
 from station.errors import RecordError
 from station.records import Record, from_json
 
+WRITTEN_S = 1.0
+"""A record is listed at the latest so long after its files are there."""
+
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """What is looked for; None: anything."""
 
+    number: int | None = None
     serial: str | None = None
     """Exactly, or its beginning with * behind it."""
     since: datetime | None = None
@@ -90,6 +95,7 @@ def find(folder: Path, wanted: Wanted = Wanted()) -> list[Row]:
 
 def _conditions(wanted: Wanted) -> tuple[list[str], list[str | float]]:
     chosen: list[tuple[str, str | float | None]] = [
+        ("r.inspection_id = ?", wanted.number),
         ("r.grabbed_at >= ?", None if wanted.since is None else wanted.since.isoformat()),
         ("r.grabbed_at < ?", None if wanted.until is None else wanted.until.isoformat()),
         ("r.verdict = ?", wanted.verdict),
@@ -137,29 +143,61 @@ def _frame_problem(folder: Path, row: Row, record: Record) -> str | None:
 
 
 def verify(folder: Path) -> Iterator[tuple[str, str]]:
-    """(file or place, what is wrong) for all that is missing, altered or taken out. Raises RecordError if there is no archive."""
-    chain, before = _let_go(folder)
-    rows = find(folder)
+    """(file or place, what is wrong) for all that is missing, altered or taken out; an engine may go on meanwhile.
+
+    Raises RecordError if there is no archive.
+    """
+    (chain, before), rows = _let_go(folder), find(folder)
+    if rows and before > rows[0].inspection_id:
+        raise RecordError(f"{folder}: is being pruned; verify again")
     for row in rows:
-        if row.inspection_id != before + 1:
+        if row.inspection_id != before + 1 and _let_go(folder)[1] < row.inspection_id - 1:
             yield f"records {before + 1} to {row.inspection_id - 1}", "were taken out of the index"
-        record, problem = read_record(folder, row)
-        if problem is not None:
-            yield row.record_file, problem
-        if row.chain is not None:
-            if row.chain != link(chain, row.record_sha256):
-                yield row.record_file, "does not follow the record before it: something here was taken out or exchanged"
-            elif record is not None and record.chain_before != chain:
-                yield row.record_file, "names another record before it"
+        for problem in _problems(folder, row, chain):
+            if find(folder, Wanted(number=row.inspection_id)) == [row]:  # not let go meanwhile
+                yield row.record_file, problem
         chain, before = row.chain or START, row.inspection_id
     listed = {name for row in rows for name in (row.record_file, row.frame_file) if name is not None}
     for path in sorted(folder.glob("????-??-??/*")):
         name = path.relative_to(folder).as_posix()
-        if name not in listed:
+        if name not in listed and not path.name.endswith(".part") and not _being_written(folder, path, before):
             yield name, "is not listed: left by a stop in the middle of a part, or put here"
+
+
+def _being_written(folder: Path, path: Path, last: int) -> bool:
+    """Whether an engine goes on meanwhile: a file after the last row is listed a moment later."""
+    if not path.stem.isdecimal() or int(path.stem) <= last:
+        return False
+    until = time.monotonic() + WRITTEN_S
+    while not find(folder, Wanted(number=int(path.stem))):
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+def _problems(folder: Path, row: Row, chain: str) -> Iterator[str]:
+    record, problem = read_record(folder, row)
+    if problem is not None:
+        yield problem
+    if record is not None:
+        inspection = record.inspection
+        said = (record.serial, record.trigger_id, record.grabbed_at.isoformat(), str(record.verdict), record.frame_file)
+        listed = (row.serial, row.trigger_id, row.grabbed_at, row.verdict, row.frame_file)
+        reason = None if inspection.reason is None else str(inspection.reason)
+        if said != listed or (reason, str(record.purpose)) != (row.reason, row.purpose):
+            yield "is listed with other words than it says itself: the index was altered"
+    if row.chain is not None:
+        if row.chain != link(chain, row.record_sha256):
+            yield "does not follow the record before it: something here was taken out or exchanged"
+        elif record is not None and record.chain_before != chain:
+            yield "names another record before it"
 
 
 def _let_go(folder: Path) -> tuple[str, int]:
     with closing(read_index(folder)) as connection:
-        row = connection.execute("SELECT chain, inspection_id FROM let_go ORDER BY inspection_id DESC LIMIT 1").fetchone()
+        try:
+            row = connection.execute("SELECT chain, inspection_id FROM let_go ORDER BY inspection_id DESC LIMIT 1").fetchone()
+        except sqlite3.Error as error:
+            raise RecordError(f"{folder}: the index cannot be read ({error})") from None
     return (START, 0) if row is None else (row["chain"], row["inspection_id"])

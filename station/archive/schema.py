@@ -5,6 +5,7 @@ holds the chain before. What is taken out or changed afterwards breaks the chain
 """
 
 import hashlib
+import os
 import sqlite3
 from pathlib import Path
 
@@ -51,6 +52,9 @@ CREATE TABLE IF NOT EXISTS let_go (
     inspection_id INTEGER NOT NULL,
     chain TEXT NOT NULL
 );
+CREATE TABLE IF NOT EXISTS to_remove (
+    name TEXT NOT NULL
+);
 """
 ADDED = {
     "purpose": "TEXT NOT NULL DEFAULT 'part'",
@@ -76,6 +80,7 @@ def open_index(folder: Path) -> sqlite3.Connection:
             if present and name not in present:
                 connection.execute(f"ALTER TABLE records ADD COLUMN {name} {kind}")
         connection.executescript(SCHEMA)
+        connection.execute("UPDATE records SET frame_state = 'none' WHERE frame_file IS NULL AND frame_state = 'kept'")
         connection.execute(f"PRAGMA user_version = {VERSION}")
     return connection
 
@@ -86,7 +91,8 @@ def read_index(folder: Path) -> sqlite3.Connection:
     if not path.is_file():
         raise RecordError(f"{folder}: no records here ({NAME} is missing); name an archive folder")
     try:
-        connection = sqlite3.connect(path.resolve().as_uri() + "?mode=ro", uri=True, timeout=2.0)
+        how = "mode=ro" if _writable(folder) else "mode=ro&immutable=1"  # beside a log that nobody can open
+        connection = sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=2.0)
         version = connection.execute("PRAGMA user_version").fetchone()[0]
     except sqlite3.Error as error:
         raise RecordError(f"{path}: not a readable index ({error})") from None
@@ -95,6 +101,10 @@ def read_index(folder: Path) -> sqlite3.Connection:
         raise RecordError(f"{path}: index of version {version}, needed {VERSION}; an engine that opens it brings an older one up to date")
     connection.row_factory = sqlite3.Row
     return connection
+
+
+def _writable(folder: Path) -> bool:
+    return os.access(folder, os.W_OK) or (folder / f"{NAME}-wal").exists()
 
 
 def link(before: str, record_sha256: str) -> str:

@@ -2,6 +2,7 @@
 
 import hashlib
 import sqlite3
+import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from datetime import datetime
@@ -18,6 +19,7 @@ from station.records import Part, Provenance, Record, to_json
 from station.settings import ArchiveSettings
 
 INCOMING = "incoming.png"
+TRIAL_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,8 @@ class Archive:
         self._folder = settings.folder
         self._stops_when_full = settings.when_full == "stop"
         self._disk = Disk(settings)
+        self._failed_s: float | None = None
+        """When a record could not be written; None: it goes well."""
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             self._lock = FolderLock(self._folder)
@@ -57,10 +61,27 @@ class Archive:
                 left.unlink()
             self._index = open_index(self._folder)
             self._chain = last_link(self._index)
+            self._guard()
         except (OSError, sqlite3.Error, RecordError) as error:
+            if hasattr(self, "_index"):
+                self._index.close()
             self._lock.close()
             raise error if isinstance(error, RecordError) else self._unusable(error) from None
         self._encoder = ThreadPoolExecutor(1, "encode")
+
+    def _guard(self) -> None:
+        """An index that is older than the files beside it would give their numbers away again. Raises RecordError."""
+        days = sorted(self._folder.glob("????-??-??"))[-3:]
+        numbers = [int(path.stem) for day in days for path in day.glob("*.json") if path.stem.isdecimal()]
+        if max(numbers, default=0) > self._next_id():  # the one after the last may be left by a stop
+            raise RecordError(
+                f"{self._folder}: holds record {max(numbers)}, its index ends at {self._next_id() - 1}; "
+                "restore index.sqlite, or set another archive.folder"
+            )
+
+    def _next_id(self) -> int:
+        row = self._index.execute("SELECT seq FROM sqlite_sequence WHERE name = 'records'").fetchone()
+        return 1 + (row[0] if row else 0)
 
     def _unusable(self, error: Exception) -> RecordError:
         return RecordError(f"{self._folder}: records cannot be kept there ({error}); set archive.folder to a writable folder")
@@ -76,8 +97,25 @@ class Archive:
         return self._disk.room()
 
     def has_room(self) -> bool:
-        """Whether parts may be taken."""
-        return self.room() > Room.FULL or not self._stops_when_full
+        """Whether parts may be taken: not while a record could not be written, nor on a full disk."""
+        return self._writes() and (self.room() > Room.FULL or not self._stops_when_full)
+
+    def _writes(self) -> bool:
+        """After a failed record: whether a trial succeeds, at the most once a second."""
+        if self._failed_s is None:
+            return True
+        if time.monotonic() - self._failed_s < TRIAL_S:
+            return False
+        try:
+            write_durable(self._folder / "trial", b"")
+            (self._folder / "trial").unlink()
+            self._index.execute("BEGIN IMMEDIATE")
+            self._index.rollback()
+        except (OSError, sqlite3.Error):
+            self._failed_s = time.monotonic()
+            return False
+        self._failed_s = None
+        return True
 
     def begin(self, frame: Frame | None) -> Pending:
         """Start to write the frame while it is being judged; an uncommitted one is gone with the next."""
@@ -99,6 +137,7 @@ class Archive:
         except (OSError, sqlite3.Error, ImageError, ValueError) as error:
             if self._index.in_transaction:
                 self._index.rollback()
+            self._failed_s = time.monotonic()
             raise RecordError(f"{self._folder}: the record could not be written: {error}") from None
 
     def mark_shown(self, inspection_id: int, shown: bool) -> None:
@@ -110,12 +149,13 @@ class Archive:
             raise RecordError(f"{self._folder}: record {inspection_id} could not be marked: {error}") from None
 
     def _commit(self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime) -> Record:
-        row = self._index.execute("SELECT seq FROM sqlite_sequence WHERE name = 'records'").fetchone()
-        inspection_id = 1 + (row[0] if row else 0)
+        inspection_id = self._next_id()
         day = self._folder / f"{now:%Y-%m-%d}"
         if not day.exists():
             day.mkdir()
             sync_folder(self._folder)
+        for suffix in ("png", "json"):  # of a part that was never listed
+            (day / f"{inspection_id:08d}.{suffix}").unlink(missing_ok=True)
         frame_file = sha256 = None
         state = "none" if pending.frame is None else "kept"
         if pending.picture is not None:

@@ -51,7 +51,9 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
         print("\n".join(comparison.lines()))
         for name in comparison.not_alike:
             print(f"weldgate: {name}: the same networks and limits judge it otherwise than on the line", file=sys.stderr)
-        bad += len(comparison.not_alike)
+        for problem in comparison.problems:
+            print(f"weldgate: {problem}", file=sys.stderr)
+        bad += len(comparison.not_alike) + len(comparison.problems)
     return 1 if bad else 0
 
 

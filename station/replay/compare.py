@@ -7,7 +7,6 @@ from typing import Any
 
 from station.archive.reader import read_record
 from station.domain import Verdict
-from station.errors import RecordError
 from station.records import Provenance, Record
 from station.replay.files import Source
 
@@ -33,6 +32,8 @@ class Comparison:
     not_alike: tuple[str, ...]
     """Of these, the ones that do not."""
     flips: tuple[Flip, ...]
+    problems: tuple[str, ...]
+    """Records that cannot be read, or whose frame is not the recorded one: not compared."""
 
     def lines(self) -> list[str]:
         """For people."""
@@ -50,12 +51,16 @@ class Comparison:
 
 
 def compare(sources: Sequence[Source], entries: Mapping[str, dict[str, Any]], judge: Provenance) -> Comparison:
-    """Entries of frames that come from an archive against their records. Raises RecordError if a record cannot be read."""
-    same, not_alike, flips, compared = 0, [], [], 0
+    """Entries of frames that come from an archive against their records."""
+    same, not_alike, flips, problems, compared = 0, [], [], [], 0
     for source in sources:
         if source.row is None:
             continue
-        record, now = _record(source), entries[source.name]
+        record, problem = _record(source)
+        if record is None or problem is not None:
+            problems.append(f"{source.path.parent / Path(source.row.record_file).name}: {problem}")
+            continue
+        now = entries[source.name]
         compared += 1
         scores, again = [s.nok for s in record.inspection.scores], [s for s in now["segments"] if s is not None]
         if _who(record.provenance) == _who(judge) and record.verdict is not Verdict.ERROR:
@@ -65,21 +70,17 @@ def compare(sources: Sequence[Source], entries: Mapping[str, dict[str, Any]], ju
         if str(record.verdict) != now["verdict"]:
             worst = (max(scores, default=None), max(again, default=None))
             flips.append(Flip(source.name, str(record.verdict), now["verdict"], *worst))
-    return Comparison(compared, same, tuple(not_alike), tuple(flips))
+    return Comparison(compared, same, tuple(not_alike), tuple(flips), tuple(problems))
 
 
-def _record(source: Source) -> Record:
+def _record(source: Source) -> tuple[Record | None, str | None]:
     if source.row is None:
-        raise RecordError(f"{source.path}: belongs to no record")
-    folder = Path(str(source.path)[: -len(str(source.row.frame_file))])
-    record, problem = read_record(folder, source.row)
-    if record is None:
-        raise RecordError(f"{folder / source.row.record_file}: {problem}")
-    return record
+        return None, "belongs to no record"
+    return read_record(Path(str(source.path)[: -len(str(source.row.frame_file))]), source.row)
 
 
 def _who(p: Provenance) -> tuple[object, ...]:
-    return p.model_hash, p.ring_model_hash, p.hole_threshold, p.missing_threshold
+    return p.model_hash, p.ring_model_hash, p.hole_threshold, p.missing_threshold, p.limits_hash
 
 
 def _score(value: float | None) -> str:

@@ -35,7 +35,11 @@ def judge(inspector: Inspector, source: Source, um_per_px: float = OWN_UM_PER_PX
     except ImageError as error:
         return Outcome(source.name, _error(str(error)), str(error))
     factor = um_per_px / OWN_UM_PER_PX
-    inspection = inspector.inspect(image if factor == 1 else _scaled(image, factor))
+    try:
+        inspection = inspector.inspect(image if factor == 1 else _scaled(image, factor))
+    except Exception as error:  # noqa: BLE001 - one image must not end the others
+        why = f"{source.path}: could not be judged ({type(error).__name__}: {str(error).splitlines()[0][:100] if str(error) else ''})"
+        return Outcome(source.name, _error(why), why)
     return Outcome(source.name, entry(inspection, factor), None, tuple(f"{source.path}: {w}" for w in warnings))
 
 

@@ -5,12 +5,14 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import asdict
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, TextIO
 
+from station.errors import ModelError
 from station.inspection import Inspector
 from station.recipe import load_inspector
 from station.replay.files import Source
@@ -69,14 +71,19 @@ def _pooled(todo: list[Marked], settings: Settings, um_per_px: float, processes:
                     yield mark, future.result()
             for mark, future in waiting:
                 yield mark, future.result()
+        except BrokenProcessPool:
+            raise ModelError("a process of the replay ended, perhaps for lack of memory; use fewer --processes") from None
         finally:
             pool.shutdown(cancel_futures=True)
 
 
 def _begin(settings: Settings) -> None:
     global _inspector  # one for each process of the pool
+    import signal
+
     import cv2
 
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends the work
     cv2.setNumThreads(1)
     _inspector = load_inspector(settings)[0]
 

@@ -8,7 +8,7 @@ from typing import Any
 def write_csv(path: Path, entries: dict[str, dict[str, Any]]) -> None:
     """Name, verdict, reason, ring, worst score. Raises OSError."""
     part = path.with_name(path.name + ".new")
-    with part.open("w", newline="", encoding="utf-8") as file:
+    with part.open("w", newline="", encoding="utf-8", errors="backslashreplace") as file:
         writer = csv.writer(file)
         writer.writerow(("file", "verdict", "reason", "center_x_px", "center_y_px", "radius_px", "worst_p_nok"))
         for name, item in entries.items():

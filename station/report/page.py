@@ -18,6 +18,8 @@ from station.records import Record
 from station.report.figures import angle_counts, bars, clock_face, trend
 from station.vision.unwrap import unwrap
 
+DOTS = 2000
+"""Parts in a trend; of more, every second, third and so on."""
 GALLERY = 40
 """NOK parts shown with their weld, the newest."""
 STYLE = (
@@ -36,7 +38,7 @@ def report(entries: Sequence[Listed], folder: Path, title: str) -> str:
         raise RecordError(f"{folder}: no parts among the chosen records; choose others")
     parts = [
         f"<h1>{escape(title)}</h1>",
-        _summary(records, sum(e.shown_to_plc is False for e in entries if e.record in records)),
+        _summary(records, sum(e.shown_to_plc is False for e in entries if e.record is not None and e.record.purpose is Purpose.PART)),
         _found(records),
         _trends(records),
         _gallery(records, folder),
@@ -77,6 +79,7 @@ def _found(records: Sequence[Record]) -> str:
 
 
 def _trends(records: Sequence[Record]) -> str:
+    records = records[:: -(-len(records) // DOTS)]
     bad = [record.verdict is not Verdict.OK for record in records]
     inspections = [record.inspection for record in records]
     limit = min(records[-1].provenance.hole_threshold, records[-1].provenance.missing_threshold)

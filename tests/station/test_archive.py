@@ -80,7 +80,10 @@ def test_a_locked_index_is_an_error_and_lists_nothing(archive: Archive, tmp_path
         put(archive, None, Inspection.error(Reason.NO_FRAME))
     other.rollback()
     other.close()
+    assert not archive.has_room(), "no parts while a record cannot be written"
     assert list(read_records(tmp_path)) == []
+    archive._failed_s = -1e9
+    assert archive.has_room(), "a trial succeeds again"
     put(archive, None, Inspection.error(Reason.NO_FRAME))
 
 

@@ -80,7 +80,7 @@ def exchange(folder: Path) -> None:
         (lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id IN (7, 8)"), "records 7 to 8", "taken out"),
         (lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id < 3"), "records 1 to 2", "taken out"),
         (exchange, "00000005.json", "does not follow"),
-        (lambda f: (f / "2026-11-22" / "00000099.json").write_text("{}"), "00000099.json", "not listed"),
+        (lambda f: (f / "2026-11-22" / "00000005.json").write_text("{}"), "2026-11-22/00000005.json", "not listed"),
     ],
 )
 def test_what_is_missing_altered_or_taken_out_is_named(
@@ -117,7 +117,7 @@ def test_whole_records_go_from_the_oldest_and_the_chain_goes_on(folder: Path) ->
     fill(folder, 1)
     assert list(verify(folder)) == []
     assert find(folder)[-1].inspection_id == 31
-    assert prune(folder, KEEP.model_copy(update={"record_days": 1}), NOW + timedelta(days=50)).records == 11
+    assert prune(folder, KEEP.model_copy(update={"record_days": 1}), NOW + timedelta(days=6)).records == 11
     fill(folder, 2)
     assert list(verify(folder)) == []
     rewrite(folder, "DELETE FROM records WHERE inspection_id = 32")
@@ -140,8 +140,70 @@ def test_a_dry_run_changes_nothing_and_says_the_same(folder: Path, capsys: pytes
     dry = prune(folder, KEEP, NOW, dry=True)
     assert sorted((p.name, p.stat().st_size) for p in folder.rglob("*.*") if "sqlite" not in p.name) == before
     assert prune(folder, KEEP, NOW) == dry
-    assert main(["records", "prune", str(folder), "--dry-run"]) == 0
+    settings = folder.parent / "station.toml"
+    settings.write_text('[camera]\nkind = "replay"\nfolder = "."\n')
+    assert main(["records", "prune", str(folder), "--dry-run", "-c", str(settings)]) == 0
     assert capsys.readouterr().out.startswith("would go: ")
+
+
+def test_a_dry_run_counts_nothing_twice(tmp_path: Path) -> None:
+    fill(tmp_path / "a", 60, days_apart=4)
+    keep = KEEP.model_copy(update={"quota_gib": 1e-9, "record_days": 100})
+    assert prune(tmp_path / "a", keep, NOW, dry=True) == prune(tmp_path / "a", keep, NOW)
+    assert list(verify(tmp_path / "a")) == []
+
+
+def test_a_clock_that_is_wrong_costs_no_pictures(folder: Path) -> None:
+    assert prune(folder, KEEP, NOW + timedelta(days=4000)).frames == 0, "far ahead of the newest record"
+    archive = Archive(ArchiveSettings(folder=folder, **ROOMY))
+    for when in (datetime(2000, 1, 1, tzinfo=UTC), NOW):
+        frame = Frame(np.zeros((16, 16), np.uint8), when, "cam", Origin.SIMULATED)
+        archive.commit(archive.begin(frame), nok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), when)
+    archive.close()
+    prune(folder, KEEP, NOW)
+    assert [row.frame_state for row in find(folder)[-2:]] == ["kept", "kept"]
+
+
+def test_what_a_stopped_pruning_left_is_removed_by_the_next(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("station.archive.prune._Work._remove", lambda *_: None)
+    gone = prune(folder, KEEP, NOW).frames
+    pictures = len(list(folder.rglob("0*.png")))
+    monkeypatch.undo()
+    prune(folder, KEEP, NOW)
+    assert len(list(folder.rglob("0*.png"))) == pictures - gone
+
+
+def test_a_lost_index_is_not_begun_again_over_the_records(folder: Path) -> None:
+    for path in folder.glob("index.sqlite*"):
+        path.unlink()
+    with pytest.raises(RecordError, match="restore index"):
+        Archive(ArchiveSettings(folder=folder, **ROOMY))
+
+
+def test_an_altered_index_is_told(folder: Path) -> None:
+    rewrite(folder, "UPDATE records SET verdict = 'OK' WHERE inspection_id = 4")
+    (place,) = [place for place, problem in verify(folder) if "the index was altered" in problem]
+    assert place.endswith("00000004.json")
+
+
+def test_verify_beside_an_engine_raises_no_false_alarm(folder: Path) -> None:
+    archive = Archive(ArchiveSettings(folder=folder, **ROOMY))
+    found, done = [], threading.Event()
+
+    def look() -> None:
+        while not done.is_set():
+            found.extend(verify(folder))
+
+    thread = threading.Thread(target=look)
+    thread.start()
+    frame = Frame(np.zeros((16, 16), np.uint8), NOW, "cam", Origin.SIMULATED)
+    for _ in range(60):
+        archive.commit(archive.begin(frame), ok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), NOW)
+    prune(folder, KEEP, NOW)
+    done.set()
+    thread.join()
+    archive.close()
+    assert found == []
 
 
 def test_the_engine_writes_while_it_is_pruned(tmp_path: Path) -> None:

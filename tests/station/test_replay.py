@@ -1,6 +1,7 @@
 """Recorded images judged again: any files, any scale, on all cores, resumed, compared with the line."""
 
 import json
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -11,9 +12,10 @@ import pytest
 import station.replay.run
 from station.__main__ import main
 from station.archive.writer import Archive
-from station.domain import Frame, Image, Origin
+from station.domain import Frame, Image, Inspection, Origin
 from station.errors import ImageError
-from station.imagefile import read_image, read_marked
+from station.imagefile import read_marked
+from station.inspection import Inspector
 from station.recipe import load_inspector
 from station.records import Part
 from station.replay.files import sources
@@ -179,10 +181,30 @@ def test_a_candidate_is_compared_with_the_line(
     assert f"NOK to OK: {ok}, would be released" in capsys.readouterr().out
 
 
-def test_a_record_that_the_same_judge_judges_otherwise_is_a_fault(archive: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (frame,) = archive.rglob("00000001.png")
-    image = read_image(frame)
-    image[:, ::2] //= 2
-    cv2.imwrite(str(frame), image)
+def test_a_record_that_the_same_judge_judges_otherwise_is_a_fault(
+    tmp_path: Path, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    inspect = Inspector.inspect
+
+    def by_a_failing_machine(inspector: Inspector, image: Image) -> Inspection:
+        judged = inspect(inspector, image)
+        return replace(judged, scores=(replace(judged.scores[0], ok=judged.scores[0].ok - 1e-9), *judged.scores[1:]))
+
+    monkeypatch.setattr(Inspector, "inspect", by_a_failing_machine)
+    archive = record_all(tmp_path / "records", for_images(SHIPPED), frames)
+    monkeypatch.undo()
+    next(archive.rglob("00000002.png")).write_bytes((FRAMES / labels()[0]["frame"]).read_bytes())
     assert main(["replay", str(archive), "--processes", "1"]) == 1
-    assert "00000001.png: the same networks and limits judge it otherwise" in capsys.readouterr().err
+    said = capsys.readouterr()
+    assert said.err.count("the same networks and limits judge it otherwise") == 3
+    assert "00000002.json: its frame 2026-11-22/00000002.png was changed" in said.err
+    assert "compared with the line: 3 parts" in said.out
+
+
+def test_one_image_that_cannot_be_judged_does_not_end_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cv2.imwrite(str(tmp_path / "dot.png"), np.zeros((1, 1), np.uint8))
+    (tmp_path / "part.png").write_bytes((FRAMES / label_with("OK")["frame"]).read_bytes())
+    assert main(["replay", str(tmp_path), "--um-per-px", "5", "--processes", "1"]) == 1
+    said = capsys.readouterr()
+    assert "dot.png: could not be judged" in said.err
+    assert said.out.startswith("2 images")
