@@ -9,16 +9,18 @@ from station.records import Record
 ERROR_NOT_JUDGED = 0x1000
 
 
-def verdict_code(record: Record) -> VerdictCode:
-    """A replayed part or a master never releases anything."""
+def verdict_code(record: Record, trusted: bool) -> VerdictCode:
+    """A replayed part or a master never releases anything, nor does a station that is not to be trusted."""
     if record.verdict is Verdict.ERROR:
         return VerdictCode.ERROR
     if record.purpose is not Purpose.PART or record.origin is Origin.REPLAY:
         return VerdictCode.TEST
-    return VerdictCode.OK if record.verdict is Verdict.OK else VerdictCode.NOK
+    if record.verdict is Verdict.OK:
+        return VerdictCode.OK if trusted else VerdictCode.TEST
+    return VerdictCode.NOK
 
 
-def answer(trigger: Trigger, record: Record, nok: tuple[bool, ...], novel: bool, drifting: bool) -> Result:
+def answer(trigger: Trigger, record: Record, nok: tuple[bool, ...], novel: bool, drifting: bool, trusted: bool) -> Result:
     """The result for a trigger; `nok`: refused segments, empty if none was judged."""
     inspection = record.inspection
     reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]
@@ -29,7 +31,7 @@ def answer(trigger: Trigger, record: Record, nok: tuple[bool, ...], novel: bool,
     )
     return Result(
         trigger=trigger,
-        verdict=verdict_code(record),
+        verdict=verdict_code(record, trusted),
         inspection_id=record.inspection_id,
         reason=reason,
         error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,

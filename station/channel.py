@@ -19,6 +19,8 @@ from station.settings import ChannelSettings
 _EVENTS: TypeAdapter[Event] = TypeAdapter(Annotated[StatusEvent | PartEvent, Field(discriminator="type")])
 _PREVIEW = TypeAdapter(Preview)
 _REQUEST = TypeAdapter(TestPicture)
+MAX_REQUESTS = 100
+"""Looked at in one go."""
 FRESH_S = 2.0
 """An older request is not carried out: whoever asked has seen that nothing came."""
 
@@ -132,13 +134,14 @@ class Inbox:
     def asked(self) -> bool:
         """Whether a test picture was asked for just now; however often, it is one."""
         fresh = False
-        while True:
+        for _ in range(MAX_REQUESTS):
             try:
                 raw = self._socket.recv(zmq.NOBLOCK)
             except zmq.Again:
-                return fresh
+                break
             with suppress(ValidationError):
                 fresh |= abs(time.time() - _REQUEST.validate_json(raw).asked_s) <= FRESH_S
+        return fresh
 
     def close(self) -> None:
         """Close the socket."""

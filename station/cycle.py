@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 
 from station.answer import answer
 from station.archive.room import Room
@@ -83,18 +84,19 @@ class Cycle:
                 self._tell_status()
                 request = self._line.next_request(IDLE_S)
                 if isinstance(request, Trigger):
-                    self._guarded(request)
+                    self._guarded(partial(self._part, request), f"part of trigger {request.trigger_id} was not answered")
                 elif isinstance(request, Command):
-                    self._line.command_done(request, self._load_recipe(request.arg))
+                    self._line.command_done(request, self._load_recipe(request))
                 elif self._listener.asks():
-                    self._test_picture()
+                    self._guarded(self._test_picture, "the test picture was not judged")
                 else:
                     self._watch.idle()
         finally:
             self._camera.close()
 
-    def _load_recipe(self, number: int) -> bool:
+    def _load_recipe(self, command: Command) -> bool:
         """Whether the recipe is in use now; if not, the one before still is."""
+        number = command.arg
         try:
             loaded = self._prepare(number)
         except WeldgateError as error:
@@ -102,6 +104,9 @@ class Cycle:
             return False
         except Exception:  # the recipe before is still in use
             log.exception("recipe %d was not loaded", number)
+            return False
+        if not self._line.wanted(command):
+            log.error("recipe %d was loaded too late, the one before stays in use", number)
             return False
         self._loaded = loaded
         self._watch.use(loaded)
@@ -178,14 +183,14 @@ class Cycle:
             )
         )
 
-    def _guarded(self, trigger: Trigger) -> None:
+    def _guarded(self, work: Callable[[], None], failed: str) -> None:
         """A fault nobody foresaw costs one part, not the station: the handshake answers ERROR at its deadline."""
         try:
-            self._part(trigger)
+            work()
         except LineError:
             raise
         except Exception:
-            log.exception("part of trigger %d was not answered", trigger.trigger_id)
+            log.exception(failed)
 
     def _part(self, trigger: Trigger) -> None:
         frame, inspection = self._take(trigger)
@@ -197,14 +202,15 @@ class Cycle:
         purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
         record = self._record(Part(trigger.serial, trigger.trigger_id, self._origin, purpose), pending, inspection)
         record_ms = (time.perf_counter() - start) * 1000
+        if trigger.golden:
+            self._watch.master(record.serial, record.verdict)
+        self._line.checked_in(self._health())
         inspector, inspection = self._loaded.inspector, record.inspection
         nok, novel = tuple(inspector.is_nok(s) for s in inspection.scores), inspector.is_novel(inspection)
         start = time.perf_counter()
-        shown = self._line.publish(answer(trigger, record, nok, novel, self._watch.drifting))
+        shown = self._line.publish(answer(trigger, record, nok, novel, self._watch.drifting, self._watch.trusted))
         publish_ms = (time.perf_counter() - start) * 1000
-        if trigger.golden:
-            self._watch.master(record.serial, record.verdict)
-        else:
+        if not trigger.golden:
             self._count(record.verdict if shown else Verdict.ERROR)
         if not shown:
             log.warning(

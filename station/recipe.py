@@ -1,5 +1,6 @@
 """A recipe made ready: networks loaded and warm, limits set, tested on a stored frame."""
 
+import hashlib
 import zlib
 from dataclasses import dataclass, replace
 
@@ -27,7 +28,7 @@ def prepare(settings: Settings, number: int) -> Loaded:
     inspector, provenance = load_inspector(chosen)
     provenance = replace(provenance, recipe=number)
     path = chosen.model.self_test_path
-    return Loaded(number, inspector, provenance, None if path is None else SelfTest(inspector, path))
+    return Loaded(number, inspector, provenance, None if path is None else SelfTest(inspector, path, str(chosen.model.self_test_verdict)))
 
 
 def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
@@ -49,5 +50,6 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
         hole_threshold=inspector.thresholds.hole,
         missing_threshold=inspector.thresholds.missing_weld,
+        limits_hash=hashlib.sha256(settings.model_dump_json(include={"weld", "quality"}).encode()).hexdigest(),
     )
     return inspector, provenance

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from station.domain import Inspection, Verdict
+from station.domain import Inspection
 from station.errors import ModelError
 from station.imagefile import read_image
 from station.inspection import Inspector
@@ -11,12 +11,13 @@ from station.inspection import Inspector
 class SelfTest:
     """The frame, and what was found in it when the station started."""
 
-    def __init__(self, inspector: Inspector, path: Path) -> None:
-        """Raises ImageError; ModelError if the frame cannot be judged."""
+    def __init__(self, inspector: Inspector, path: Path, verdict: str) -> None:
+        """Raises ImageError; ModelError if the frame is not judged as it must be."""
         self._inspector, self._image = inspector, read_image(path)
         self._expected = inspector.inspect(self._image)
-        if self._expected.verdict is Verdict.ERROR:
-            raise ModelError(f"{path}: the self-test frame cannot be judged ({self._expected.reason}); name a frame of this weld")
+        if self._expected.verdict != verdict:
+            found = f"{self._expected.verdict}, {self._expected.reason}" if self._expected.reason else str(self._expected.verdict)
+            raise ModelError(f"{path}: the self-test frame is judged {found}, must be {verdict}; check networks, limits and this PC")
 
     def passes(self) -> bool:
         """Whether the same is found again, to the bit."""

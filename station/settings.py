@@ -79,10 +79,18 @@ class ModelSettings(Section):
     threads: int = Field(default=2, ge=1, le=64)
     self_test_path: Path | None = None
     """Frame that is judged at the start and again while idle: its scores must never change."""
+    self_test_verdict: Literal["OK", "NOK"] | None = None
+    """What must be found in it at the start."""
     self_test_s: float = Field(default=10.0, ge=0.5, le=3600)
     """Idle time between two self-tests."""
     hole_threshold: Share | None = None
     missing_threshold: Share | None = None
+
+    @model_validator(mode="after")
+    def _self_test_is_whole(self) -> "ModelSettings":
+        if (self.self_test_path is None) != (self.self_test_verdict is None):
+            raise ValueError("self_test_path and self_test_verdict belong together")
+        return self
 
 
 class TlsSettings(Section):
@@ -160,7 +168,7 @@ class KeepSettings(Section):
     error_days: Days = 365
     record_days: Days = 3650
     """Records themselves."""
-    quota_gib: float = Field(default=500.0, gt=0)
+    quota_gib: float = Field(default=500.0, gt=0, allow_inf_nan=False)
     """Of pictures; the oldest OK go first, then those not judged, then NOK."""
 
 

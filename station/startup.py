@@ -5,15 +5,17 @@ import signal
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack, closing
+from pathlib import Path
 from types import FrameType
 from typing import TypeVar
 
 from station.archive.prune import Housekeeping
+from station.archive.reader import Wanted, find
 from station.archive.writer import Archive
 from station.camera.port import Camera
 from station.channel import Inbox, Publisher
 from station.cycle import Cycle, Listener
-from station.domain import Verdict
+from station.domain import Purpose, Verdict
 from station.errors import WeldgateError
 from station.plc.buslog import BusLog
 from station.plc.line import make_line
@@ -48,10 +50,20 @@ def make_cycle(settings: Settings, loaded: Loaded, line: Line, archive: Archive,
         archive=archive,
         loaded=loaded,
         prepare=lambda number: prepare(settings, number),
-        watch=Watch(loaded, masters, settings.model.self_test_s),
+        watch=Watch(loaded, masters, _wrong_masters(settings.archive.folder, masters), settings.model.self_test_s),
         listener=listener,
         reconnect_s=settings.camera.reconnect_s if isinstance(settings.camera, PylonSettings) else 1.0,
     )
+
+
+def _wrong_masters(folder: Path, masters: dict[str, Verdict]) -> list[str]:
+    """Masters whose last golden check, before this start, found something else."""
+    wrong = []
+    for serial, true in masters.items():
+        checks = [row for row in find(folder, Wanted(serial=serial)) if row.purpose == Purpose.GOLDEN]
+        if checks and checks[-1].verdict != true:
+            wrong.append(serial)
+    return wrong
 
 
 def run_engine(settings: Settings) -> None:

@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -19,10 +19,11 @@ AGAIN_S = 1.0
 class Watch:
     """Hears of every part; tells what the PLC must know beside the verdicts."""
 
-    def __init__(self, loaded: Loaded, masters: Mapping[str, Verdict], self_test_s: float) -> None:
-        """`masters`: serial and true verdict of each golden part; `self_test_s`: idle time between two self-tests."""
+    def __init__(self, loaded: Loaded, masters: Mapping[str, Verdict], wrong: Iterable[str], self_test_s: float) -> None:
+        """`masters`: serial and true verdict of each golden part; `wrong`: those judged wrongly at last, before the station was started;
+        `self_test_s`: idle time between two self-tests."""
         self._masters, self._self_test_s = masters, self_test_s
-        self._wrong: set[str] = set()
+        self._wrong = set(wrong)
         self.use(loaded)
 
     def use(self, loaded: Loaded) -> None:
@@ -39,6 +40,11 @@ class Watch:
     def drifting(self) -> bool:
         """Whether the pictures have changed."""
         return self.drift is not None and self.drift.alarm
+
+    @property
+    def trusted(self) -> bool:
+        """Whether an OK may be said: no master was judged wrongly, the self-test passes."""
+        return not self._wrong and not self.self_test_failed
 
     @property
     def master_wrong(self) -> bool:

@@ -97,6 +97,8 @@ class State:
     """Being carried out."""
     commands: int = 0
     """Commands handed to the station so far."""
+    heard: Command | None = None
+    """The last of them."""
     result: Result | None = None
     shown_s: float = 0.0
     process_ms: int = 0
@@ -132,7 +134,7 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
     s = replace(s, control=inputs.control)
     s = _acknowledge(s, inputs, rising, now_s, times)
     s, rising = _commanded(s, inputs, rising, now_s, times)
-    command = s.command if s.commands > state.commands else None
+    command = s.heard if s.commands > state.commands else None
     offline = _offline(s, inputs, now_s, times)
     s = replace(s, offline=offline)
     start: Trigger | None = None
@@ -174,7 +176,8 @@ def ready(s: State) -> bool:
 def _clocks(s: State, inputs: Inputs, now_s: float, times: Times) -> State:
     if inputs.plc_heartbeat != s.plc_heartbeat:
         s = replace(s, plc_heartbeat=inputs.plc_heartbeat, plc_seen_s=now_s)
-    if inputs.health_age_s <= times.alive_s and inputs.health.ready and now_s - s.heartbeat_s >= 0.1:
+    patience_s = max(times.alive_s, times.deadline_s) if s.phase is Phase.BUSY else times.alive_s
+    if inputs.health_age_s <= patience_s and inputs.health.ready and now_s - s.heartbeat_s >= 0.1:
         s = replace(s, heartbeat=(s.heartbeat + 1) & 0xFFFF, heartbeat_s=now_s)
     if not (s.control & Control.TRIGGER) and inputs.control & Control.TRIGGER:
         s = replace(s, trigger_since_s=now_s)
@@ -217,9 +220,11 @@ def _commanded(s: State, inputs: Inputs, rising: Control, now_s: float, times: T
             s = _wiped(replace(s, phase=Phase.IDLE))
     elif code == CommandCode.ABORT:
         rising |= Control.ABORT
-    elif code in list(CommandCode) and s.command is None and s.phase not in (Phase.WIPED, Phase.BUSY):
-        command = Command(CommandCode(code), inputs.arg, s.commands + 1, now_s)
-        return replace(s, cmd_done=False, command=command, commands=command.number), rising
+    elif code in (CommandCode.RESET_COUNTERS, CommandCode.TIME_SYNC):
+        s = replace(s, heard=Command(CommandCode(code), inputs.arg, s.commands + 1, now_s), commands=s.commands + 1)
+    elif code == CommandCode.LOAD_RECIPE and s.command is None and s.phase in (Phase.OFFLINE, Phase.IDLE):
+        command = Command(CommandCode.LOAD_RECIPE, inputs.arg, s.commands + 1, now_s)
+        return replace(s, cmd_done=False, command=command, heard=command, commands=command.number), rising
     else:
         code = REFUSED
     return replace(s, cmd_done=True, cmd_echo=code), rising

@@ -34,7 +34,7 @@ from station.settings import PlcSettings
 log = logging.getLogger("weldgate.line")
 
 GRACE_S = 2.0
-"""A link lost for longer ends the part in work, if no heartbeat is watched."""
+"""A link lost for longer ends the part in work."""
 ANSWER_S = 5.0
 """Beyond the deadline a published result is answered, one way or the other, within this time."""
 
@@ -136,6 +136,10 @@ class ModbusLine:
         self._done = (command.number, well)
         self._poke()
 
+    def wanted(self, command: Command) -> bool:
+        """Whether this command still waits to be carried out."""
+        return self._state.command is not None and self._state.command.number == command.number
+
     def publish(self, result: Result) -> bool:
         """Offer a result; returns once it is readable. False if it came too late or may not have reached the PLC."""
         answer: Future[bool] = Future()
@@ -143,8 +147,8 @@ class ModbusLine:
         self._poke()
         try:
             return answer.result(timeout=self._times.deadline_s + ANSWER_S)
-        except TimeoutError:
-            raise LineError("the Modbus line does not answer") from None
+        except TimeoutError:  # the link is down for so long that the deadline has answered
+            return False
 
     def checked_in(self, health: Health) -> None:
         """The inspection is alive."""
@@ -192,7 +196,7 @@ class ModbusLine:
         except LineError as error:
             link = False
             self._link_lost(error, now_s)
-        if self._lost_s is not None and not link and now_s - self._lost_s < (self._times.plc_heartbeat_s or GRACE_S):
+        if self._lost_s is not None and not link and now_s - self._lost_s < min(self._times.plc_heartbeat_s or GRACE_S, GRACE_S):
             return False
         offered, self._offered = self._offered, None  # taken once: the cycle may offer the next at any moment
         outcome = step(self._state, self._inputs(now_s, link, None if offered is None else offered[0]), now_s, self._times)
@@ -255,9 +259,6 @@ class ModbusLine:
             log.info("PLC time is %+.1f s from the station's", plc_s - time.time())
         else:
             self._after.append(lambda: self._requests.put(command))
-            return
-        self._done = (command.number, True)
-        self._after.append(self._poke)
 
     def _count(self, after: State) -> None:
         if after.phase is Phase.SHOWN and self._state.phase is Phase.BUSY and after.result is not None:

@@ -32,10 +32,10 @@ from station.plc.framing import frames, refusal
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL)
 
 READ, WRITE = 3, 4
-"""Function codes for the application's own access; 4 can never be a client's write."""
+"""Function codes of our own access; 4 can never be a client's write."""
 FUNCTIONS = frozenset((1, 2, 3, 4, 5, 6, 15, 16, 22, 23, 43))
 CLIENT_WRITES = frozenset((5, 6, 15, 16, 22, 23))
-MAX_PEERS = 128
+MAX_PEERS, HANDSHAKE_S = 128, 60.0
 MAX_WAITING = 16
 """Requests of one peer that wait for their answer."""
 MAX_BYTES = 16384
@@ -55,7 +55,7 @@ class _Peer(ServerRequestHandler):
         self._requests: asyncio.Queue[ModbusPDU | bytes] = asyncio.Queue(MAX_WAITING)
         self.max_buffer_size = MAX_BYTES
         self._answering: asyncio.Task[None] | None = None
-        self.number = next(self.numbers)
+        self.number, self.begun_s = next(self.numbers), time.monotonic()
         self.name = "unknown"
         self.heard_s = 0.0
         """Time of the last request; 0: none yet."""
@@ -149,9 +149,8 @@ class ModbusServer:
 
     async def start(self) -> None:
         """Listen. Raises LineError if the port cannot be had."""
-        identity = ModbusDeviceIdentification(  # type: ignore[no-untyped-call]
-            info_name={"VendorName": "weldgate", "ProductCode": "WG", "ProductName": "weldgate", "MajorMinorRevision": __version__}
-        )
+        info = {"VendorName": "weldgate", "ProductCode": "WG", "ProductName": "weldgate", "MajorMinorRevision": __version__}
+        identity = ModbusDeviceIdentification(info_name=info)  # type: ignore[no-untyped-call]
         memory = [SimData(0, count=self._words, datatype=DataType.REGISTERS)]
         device = SimDevice(id=0, simdata=memory, use_bit_addressing=True, identity=identity, action=self._gate)
         address = (self.host, self.port)
@@ -160,13 +159,13 @@ class ModbusServer:
                 server = ModbusTcpServer(device, identity=identity, address=address)
             else:  # Modbus/TCP Security keeps the MBAP header, which pymodbus' own TLS framing lacks
                 server = ModbusTlsServer(device, identity=identity, address=address, sslctx=self._tls, framer=FramerType.SOCKET)
-            server.callback_new_connection = lambda: _Peer(self, server)  # type: ignore[method-assign]
+            server.callback_new_connection = lambda: self._expected(server)  # type: ignore[method-assign]
             await server.serve_forever(background=True)
         except (OSError, RuntimeError, ModbusException) as error:
             raise LineError(f"Modbus server cannot listen on {self.host}:{self.port} ({error}); free the port or set plc.port") from None
         self._server = server
-        sockets = getattr(server.transport, "sockets", ())
-        self.port = sockets[0].getsockname()[1] if sockets else self.port
+        if sockets := getattr(server.transport, "sockets", ()):
+            self.port = sockets[0].getsockname()[1]
 
     async def stop(self) -> None:
         """Zero all, close all connections."""
@@ -191,6 +190,13 @@ class ModbusServer:
             raise LineError("the Modbus server is not running")
         return self._server
 
+    def _expected(self, server: ModbusTcpServer) -> _Peer:
+        """A peer that begins to connect; those that never finish, as after a failed TLS handshake, pymodbus would keep for ever."""
+        for key, peer in list(server.active_connections.items()):
+            if getattr(peer, "transport", None) is None and time.monotonic() - getattr(peer, "begun_s", 0.0) > HANDSHAKE_S:
+                del server.active_connections[key]
+        return _Peer(self, server)
+
     def welcome(self, peer: _Peer) -> bool:
         """Whether a new connection may stay; the one that was silent longest makes room."""
         if not admitted(peer.name, self._allow):
@@ -202,7 +208,7 @@ class ModbusServer:
         return True
 
     def goodbye(self, peer: _Peer) -> None:
-        """A connection is gone."""
+        """It is gone."""
         self._peers.pop(peer.number, None)
         self._right.drop(peer.number)
 

@@ -78,6 +78,9 @@ class Line(Protocol):
     def next_request(self, timeout_s: float) -> Trigger | Command | None:
         """The next accepted trigger or command, or None."""
 
+    def wanted(self, command: Command) -> bool:
+        """Whether this command still waits to be carried out; if not, the PLC was told that it is refused."""
+
     def command_done(self, command: Command, well: bool) -> None:
         """A command was carried out, or refused."""
 

@@ -230,6 +230,10 @@ def test_a_recipe_is_loaded_with_ready_at_zero_and_the_result_wiped(well: bool, 
     plc.step(result(plc.started[-1]))
     plc.control, plc.command = ON | Control.EXEC_COMMAND, CommandCode.LOAD_RECIPE
     plc.step()
+    assert (plc.commanded, plc.values()["CMD_ECHO"], plc.values()["VERDICT"]) == ([], REFUSED, 1), "an unread result is not wiped"
+    for control in (ON | Control.RESULT_ACK, ON, ON | Control.EXEC_COMMAND):
+        plc.control = control
+        plc.step()
     (command,) = plc.commanded
     assert (plc.values()["VERDICT"], plc.values()["OFFLINE_REASON"]) == (0, Offline.PREPARING)
     assert not plc.bits() & (Status.READY | Status.CMD_DONE)
@@ -239,6 +243,23 @@ def test_a_recipe_is_loaded_with_ready_at_zero_and_the_result_wiped(well: bool, 
     plc.control = ON
     plc.step()
     assert Status.CMD_DONE not in plc.bits()
+
+
+@pytest.mark.parametrize("code", [CommandCode.RESET_COUNTERS, CommandCode.TIME_SYNC])
+def test_a_command_of_the_line_leaves_an_unread_result_alone(code: CommandCode, plc: Driver) -> None:
+    plc.trigger(1)
+    plc.step(result(plc.started[-1]))
+    plc.control, plc.command = ON | Control.EXEC_COMMAND, code
+    plc.step()
+    assert [c.code for c in plc.commanded] == [code]
+    assert (plc.values()["CMD_ECHO"], plc.values()["VERDICT"]) == (code, 1)
+
+
+def test_the_heartbeat_goes_on_through_a_long_part(plc: Driver) -> None:
+    plc.trigger(1)
+    before = plc.state.heartbeat
+    inputs = Inputs(plc.control, 999, 1, "S", 0, WELL, TIMES.deadline_s)
+    assert step(plc.state, inputs, plc.now + 0.2, TIMES).state.heartbeat == before + 1
 
 
 def test_a_command_that_nobody_carries_out_is_refused_in_the_end(plc: Driver) -> None:

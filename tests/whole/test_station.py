@@ -224,7 +224,7 @@ def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(s
     assert [verdict for verdict, _ in masters] == [VerdictCode.TEST] * 3
     assert None not in [refused for _, refused in masters]
     assert seen[1] == (VerdictCode.OK, None)
-    assert seen[3] == (VerdictCode.OK, "station reports failure or function check")
+    assert seen[3] == (VerdictCode.TEST, "OK and NOK are not 1 and 0")
     assert seen[5] == (VerdictCode.OK, None)
     assert [(r.purpose is Purpose.GOLDEN, str(r.verdict)) for e in read_records(station.folder) if (r := e.record) is not None] == [
         (True, "OK"),
@@ -241,9 +241,9 @@ def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
     settings: Settings, frames: dict[str, Image], tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     cv2.imwrite(str(tmp_path / "stored.png"), frames[label_with("hole")["frame"]])
-    model = settings.model.model_copy(update={"self_test_path": tmp_path / "stored.png", "self_test_s": 0.5})
+    model = settings.model.model_copy(update={"self_test_path": tmp_path / "stored.png", "self_test_verdict": "NOK", "self_test_s": 0.5})
     loaded = prepare(settings.model_copy(update={"model": model}), 1)
-    watch = Watch(loaded, {}, 0.0)
+    watch = Watch(loaded, {}, (), 0.0)
     watch.idle()
     assert not watch.self_test_failed
     assert loaded.self_test is not None
@@ -252,7 +252,7 @@ def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
     assert watch.self_test_failed
     assert "self-test failed" in caplog.text
     cv2.imwrite(str(tmp_path / "stored.png"), np.zeros((2160, 4200), np.uint8))
-    with pytest.raises(ModelError, match="cannot be judged"):
+    with pytest.raises(ModelError, match="must be NOK"):
         prepare(settings.model_copy(update={"model": model}), 1)
 
 

@@ -79,6 +79,9 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("input", "Crc", "WORD", "released CONFIG_CRC"),
     Variable("input", "AcceptSimulated", "BOOL", "TRUE only in a demonstration without a camera"),
     Variable("input", "WindowTime", "TIME", "the result must come within", "T#4s"),
+    Variable("input", "Extra", "WORD", "further bits of CONTROL, as CLEAR_ERROR, EXEC_COMMAND, SET_OFFLINE, ABORT"),
+    Variable("input", "CommandCode", "UINT", "COMMAND for EXEC_COMMAND"),
+    Variable("input", "Argument", "UINT", "ARG of the command"),
     Variable("output", "Command", f"ARRAY[0..{COMMAND_WORDS - 1}] OF WORD", "command window, to be written whole"),
     Variable("output", "PartOk", "BOOL", "the part may pass; FALSE until all points held in one read"),
     Variable("output", "PartDone", "BOOL", "the part is answered"),
@@ -88,6 +91,7 @@ VARIABLES: tuple[Variable, ...] = (
     Variable(
         "local", "State", "UINT", "0 idle, 10 wait for READY and a heartbeat, 20 number written, 30 triggered, 40 in work, 50 acknowledged"
     ),
+    Variable("local", "Control", "WORD", "bits of the handshake"),
     Variable("local", "TriggerId", "UINT", "of the part in the nest"),
     Variable("local", "BeatKnown", "BOOL", ""),
     Variable("local", "BeatEver", "BOOL", ""),
@@ -139,7 +143,7 @@ StartEdge(CLK := Start);
 PartTimer(IN := (State <> 0), PT := WindowTime);
 CASE State OF
 0:
-    Command[0] := 16#{enable:04X};
+    Control := 16#{enable:04X};
     IF StartEdge.Q THEN
         PartOk := FALSE;
         PartDone := FALSE;
@@ -162,15 +166,15 @@ CASE State OF
 20:
     IF Fresh THEN
         IF Golden THEN
-            Command[0] := 16#{golden:04X};
+            Control := 16#{golden:04X};
         ELSE
-            Command[0] := 16#{trigger:04X};
+            Control := 16#{trigger:04X};
         END_IF;
         State := 30;
     END_IF;
 30:
     IF Fresh AND {bit("STATUS", Status.TRIGGER_ACK)} AND (WORD_TO_UINT({word("ACK_TRIGGER_ID")}) = TriggerId) THEN
-        Command[0] := 16#{enable:04X};
+        Control := 16#{enable:04X};
         State := 40;
     END_IF;
 40:
@@ -181,12 +185,12 @@ CASE State OF
         END_FOR;
 {rule}
         PartOk := (Refusal = 0) AND NOT Golden;
-        Command[0] := 16#{acknowledge:04X};
+        Control := 16#{acknowledge:04X};
         State := 50;
     END_IF;
 50:
     IF Fresh AND NOT {bit("STATUS", Status.RESULT_VALID)} THEN
-        Command[0] := 16#{enable:04X};
+        Control := 16#{enable:04X};
         Busy := FALSE;
         PartDone := TRUE;
         State := 0;
@@ -201,11 +205,14 @@ IF PartTimer.Q AND (State <> 0) THEN
         Refusal := {NO_RESULT};
     END_IF;
     PartOk := PartOk AND (State = 50);
-    Command[0] := 16#{enable:04X};
+    Control := 16#{enable:04X};
     Busy := FALSE;
     PartDone := TRUE;
     State := 0;
 END_IF;
+Command[0] := Control OR Extra;
+Command[3] := UINT_TO_WORD(CommandCode);
+Command[4] := UINT_TO_WORD(Argument);
 """
 
 

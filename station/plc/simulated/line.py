@@ -79,7 +79,6 @@ class SimulatedLine:
         self._connected = False
         self._crc_known = False
         self._written: list[int] | None = None
-        self._extra = Control(0)
         self._knobs: frozenset[Knob] = frozenset()
 
     @staticmethod
@@ -119,11 +118,10 @@ class SimulatedLine:
 
     async def command(self, code: CommandCode | int, arg: int = 0, timeout_s: float = 30.0) -> int | None:
         """Have a command carried out; its echo, None if none came."""
-        self._v.Command[3], self._v.Command[4] = int(code), arg
-        self._extra = Control.EXEC_COMMAND
+        self._v.CommandCode, self._v.Argument, self._v.Extra = int(code), arg, int(Control.EXEC_COMMAND)
         done = await self._until(lambda: bool(self._v.Window[0] & Status.CMD_DONE), timeout_s)
         echo = number(self.status(), "CMD_ECHO") if done else None
-        self._extra = Control(0)
+        self._v.Extra = 0
         await self._until(lambda: not self._v.Window[0] & Status.CMD_DONE, 2.0)
         return echo
 
@@ -138,8 +136,6 @@ class SimulatedLine:
         if not self._crc_known and await self.wait_ready(window_s):
             v.Crc, self._crc_known = number(self.status(), "CONFIG_CRC"), True
         self._knobs = knobs
-        if Knob.ID_REUSE in knobs:
-            v.TriggerId = (v.TriggerId - 1) % 0xFFFF
         v.Start, seen, triggered_s, valid_s, quiet = True, None, None, None, Knob.SILENCE not in knobs
         silent_in = self._rng.choice((10, 30, 40, 50))
         until = time.monotonic() + 2 * window_s
@@ -204,7 +200,7 @@ class SimulatedLine:
         except LineError:
             v.Fresh, self._connected = False, False
         self._block.cycle(time.monotonic())
-        words = [v.Command[0] | self._extra, *v.Command[1:]]
+        words = list(v.Command)
         try:
             if self._connected and words != self._written:
                 await self._write(words)
@@ -228,6 +224,8 @@ class SimulatedLine:
         held = self._written
         if Knob.STUCK_ACK in self._knobs and held is not None and held[0] & Control.RESULT_ACK and not words[0] & Control.RESULT_ACK:
             await asyncio.sleep(self._rng.uniform(*SILENCE_S))
+        if Knob.ID_REUSE in self._knobs:
+            words = [*words[:2], number(self.status(), "ACK_TRIGGER_ID"), *words[3:]]
         await self._windows.write(COMMAND_START, words[:COMMAND_WORDS])
         if Knob.EARLY_DROP in self._knobs and words[0] & Control.TRIGGER:
             await self._windows.write(COMMAND_START, [words[0] & ~Control.TRIGGER])
