@@ -29,7 +29,7 @@ from station.plc.simulated.windows import OwnWindows
 from station.settings import PlcSettings
 
 MODES = ("server", "client")
-WINDOW_S = 0.7
+WINDOW_S = 1.5
 KNOB_SHARE = 0.012
 """Share of the parts in which each knob is turned."""
 LATE_SHARE, ERROR_SHARE, OK_SHARE = 0.005, 0.02, 0.6
@@ -95,7 +95,7 @@ def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
         stuck_ms=300,
         plc_heartbeat_ms=500,
         poll_ms=5,
-        timeout_ms=200,
+        timeout_ms=400,
         writer_idle_ms=200,
     )
     line = make_line(settings)
