@@ -135,7 +135,7 @@ class ClientWire:
         return reordered(COMMAND_START, words) if self._low_word_first else words
 
     async def publish(self, words: list[int]) -> None:
-        """The record, then STATUS, whose bits say that it counts; before another record the bits of the old one are taken away."""
+        """The record, then STATUS, whose bits say that it counts; before another record all bits go that do not hold any longer."""
         if self._low_word_first:
             words = reordered(STATUS_START, words)
         before = self._written
@@ -143,7 +143,7 @@ class ClientWire:
             return
         try:
             if before is not None and before[HEAD] != words[HEAD] and before[0] & SHOWS:
-                await self._status([before[0] & ~SHOWS])
+                await self._status([before[0] & words[0] & ~SHOWS])  # READY must not outlive the result
             if before is None or before[1:] != words[1:]:
                 await self._record(words)
             if before is None or before[0] != words[0]:

@@ -1,6 +1,7 @@
 """The station as client of a PLC that is mute, drops the link, takes half of a write, or has its windows elsewhere."""
 
 import asyncio
+import random
 import socket
 import threading
 import time
@@ -11,10 +12,12 @@ import pytest
 from deploy.demo import free_ports
 from deploy.judge import WELL, Judge
 from station.plc.line import make_line
+from station.plc.modbus import ModbusServer
 from station.plc.port import Result, Trigger
-from station.plc.registers import Flags, Offline, VerdictCode
+from station.plc.registers import STATUS_START, STATUS_WORDS, Flags, Offline, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
+from station.plc.wire import SHOWS, ClientWire
 from station.settings import PlcSettings
 
 
@@ -176,3 +179,35 @@ def test_a_wrong_base_address_is_said_with_its_register(ports: int, caplog: pyte
 def test_windows_that_overlap_are_refused() -> None:
     with pytest.raises(ValueError, match="overlap"):
         PlcSettings(mode="client", command_base=90, status_base=100)
+
+
+def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(ports: int) -> None:
+    """Of a result that goes no bit may stay that the next status lacks: a READY left over would be taken for a new one."""
+    rng, words = random.Random(7), STATUS_START + STATUS_WORDS
+
+    async def publish_many() -> None:
+        plc = ModbusServer("127.0.0.1", ports, words, range(STATUS_START, words), lambda: looks.append(asyncio.create_task(look())))
+        looks: list[asyncio.Task[None]] = []
+        seen: list[int] = []
+
+        async def look() -> None:
+            seen.extend(await plc.read(STATUS_START, 1))
+
+        await plc.start()
+        wire = ClientWire("127.0.0.1", ports, 1, (0, STATUS_START), 0.005, 1.0, False, None)
+        await wire.read_command()
+        before = [0] * STATUS_WORDS
+        for head in range(1, 200):
+            after = [rng.getrandbits(16), 0, head, *(rng.getrandbits(16) for _ in range(STATUS_WORDS - 3))]
+            seen.clear()
+            await wire.publish(after)
+            await asyncio.gather(*looks)
+            assert await plc.read(STATUS_START, STATUS_WORDS) == after
+            for status in seen:
+                assert status in (before[0], after[0]) or (status & before[0] & after[0] == status and not status & SHOWS)
+            assert before[0] & SHOWS == 0 or (before[0] & after[0] & ~SHOWS & 0xFFFF) in seen
+            before = after
+        await wire.close()
+        await plc.stop()
+
+    asyncio.run(publish_many())
