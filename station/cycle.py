@@ -14,9 +14,9 @@ from functools import partial
 from station.answer import answer
 from station.archive.room import Room
 from station.archive.writer import Archive, Pending
-from station.camera.port import Camera
+from station.camera.reconnecting import ReconnectingCamera
 from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing, Verdict
-from station.errors import CameraLost, FrameDamaged, FrameTimeout, LineError, RecordError, WeldgateError
+from station.errors import LineError, RecordError, WeldgateError
 from station.events import Counts, Event, PartEvent, Preview, StatusEvent
 from station.plc.port import Command, Health, Line, Trigger
 from station.plc.registers import Offline, Status
@@ -29,7 +29,6 @@ log = logging.getLogger("weldgate.cycle")
 
 IDLE_S = 0.1
 STATUS_S = 0.25
-ALIVE_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +46,7 @@ class Cycle:
 
     def __init__(
         self,
-        camera: Camera,
+        camera: ReconnectingCamera,
         origin: Origin,
         line: Line,
         archive: Archive,
@@ -55,7 +54,6 @@ class Cycle:
         prepare: Callable[[int], Loaded],
         watch: Watch,
         listener: Listener,
-        reconnect_s: float,
     ) -> None:
         """`prepare` loads a recipe. Raises WeldgateError."""
         self._camera = camera
@@ -66,11 +64,6 @@ class Cycle:
         self._prepare = prepare
         self._watch = watch
         self._listener = listener
-        self._reconnect_s = reconnect_s
-        self._camera_there = False
-        self._camera_message = "camera not opened yet"
-        self._tried_s = -1e9
-        self._alive_s = 0.0
         self._status_s = 0.0
         self._counts = Counts()
         self._room = Room.ENOUGH
@@ -79,7 +72,7 @@ class Cycle:
         """Serve triggers until `stop`; closes the camera at the end."""
         try:
             while not stop.is_set():
-                self._look_after_camera()
+                self._camera.look_after()
                 self._line.checked_in(self._health())
                 self._tell_status()
                 request = self._line.next_request(IDLE_S)
@@ -114,31 +107,10 @@ class Cycle:
         log.info("recipe %d in use, configuration %d", number, loaded.provenance.config_crc)
         return True
 
-    def _look_after_camera(self) -> None:
-        now = time.monotonic()
-        if self._camera_there and now - self._alive_s >= ALIVE_S:
-            self._alive_s = now
-            if not self._camera.alive():
-                self._lost("camera stopped answering")
-        if not self._camera_there and now - self._tried_s >= self._reconnect_s:
-            try:
-                self._camera.open()
-            except CameraLost as error:
-                self._lost(str(error))
-            else:
-                log.info("camera opened")
-                self._camera_there, self._camera_message, self._alive_s = True, "", now
-            self._tried_s = time.monotonic()
-
-    def _lost(self, message: str) -> None:
-        if message != self._camera_message:
-            log.warning("%s", message)
-        self._camera_there, self._camera_message = False, message
-
     def _health(self) -> Health:
         room = self._archive.has_room()
         offline = Offline.NONE
-        if not self._camera_there:
+        if not self._camera.there:
             offline = Offline.CAMERA_LOST
         elif not room:
             offline = Offline.ARCHIVE_FULL
@@ -173,8 +145,8 @@ class Cycle:
         status = Status(published["STATUS"])
         self._listener.event(
             StatusEvent(
-                camera_there=self._camera_there,
-                camera_message=self._camera_message,
+                camera_there=self._camera.there,
+                camera_message=self._camera.message,
                 online=Status.ONLINE in status,
                 ready=Status.READY in status,
                 offline=Offline(published["OFFLINE_REASON"]),
@@ -197,16 +169,15 @@ class Cycle:
         pending = self._archive.begin(frame)
         if frame is not None:
             inspection = self._judge(frame, inspection.timing)
-            self._watch.part(inspection)
         start = time.perf_counter()
         purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
         record = self._record(Part(trigger.serial, trigger.trigger_id, self._origin, purpose), pending, inspection)
         record_ms = (time.perf_counter() - start) * 1000
+        self._watch.part(record.inspection)
         if trigger.golden:
             self._watch.master(record.serial, record.verdict)
         self._line.checked_in(self._health())
-        inspector, inspection = self._loaded.inspector, record.inspection
-        nok, novel = tuple(inspector.is_nok(s) for s in inspection.scores), inspector.is_novel(inspection)
+        nok, novel = self._decided(record)
         start = time.perf_counter()
         shown = self._line.publish(answer(trigger, record, nok, novel, self._watch.drifting, self._watch.trusted))
         publish_ms = (time.perf_counter() - start) * 1000
@@ -222,11 +193,9 @@ class Cycle:
                 "part %d, %s: unlike the training images (distance %.2f); check light, focus and surface",
                 record.inspection_id,
                 record.serial,
-                inspection.novelty,
+                record.inspection.novelty,
             )
-        self._listener.event(PartEvent(record, nok, novel, self._watch.drift, shown, record_ms, publish_ms))
-        if frame is not None:
-            self._listener.preview(make_preview(record.inspection_id, frame.image, inspection.ring))
+        self._tell(frame, PartEvent(record, nok, novel, self._watch.drift, shown, record_ms, publish_ms))
 
     def _test_picture(self) -> None:
         """A picture of what lies there now, judged and recorded; the PLC is told nothing, the counters stand still."""
@@ -236,11 +205,17 @@ class Cycle:
             inspection = self._judge(frame, inspection.timing)
         record = self._record(Part("", 0, self._origin, Purpose.TEST), pending, inspection)
         self._mark(record, False)
+        self._tell(frame, PartEvent(record, *self._decided(record), self._watch.drift, False, 0.0, 0.0))
+
+    def _decided(self, record: Record) -> tuple[tuple[bool, ...], bool]:
+        """Which segments are refused, and whether the picture is unlike all training."""
         inspector = self._loaded.inspector
-        nok, novel = tuple(inspector.is_nok(s) for s in record.inspection.scores), inspector.is_novel(record.inspection)
-        self._listener.event(PartEvent(record, nok, novel, self._watch.drift, False, 0.0, 0.0))
+        return tuple(inspector.is_nok(s) for s in record.inspection.scores), inspector.is_novel(record.inspection)
+
+    def _tell(self, frame: Frame | None, event: PartEvent) -> None:
+        self._listener.event(event)
         if frame is not None:
-            self._listener.preview(make_preview(record.inspection_id, frame.image, record.inspection.ring))
+            self._listener.preview(make_preview(event.record.inspection_id, frame.image, event.record.inspection.ring))
 
     def _mark(self, record: Record, shown: bool) -> None:
         try:
@@ -263,28 +238,15 @@ class Cycle:
             return self._archive.commit(pending, inspection, part, provenance, now)
         except RecordError as error:
             log.error("%s", error)
+        except Exception:  # the gate must answer, and without a record never with a verdict
+            log.exception("the record could not be written")
         failed = Inspection.error(Reason.RECORD_FAILED, inspection.ring, inspection.quality, inspection.timing)
         return Record(0, part.serial, part.trigger_id, now, "", part.origin, None, None, failed, provenance, part.purpose)
 
     def _grab(self) -> tuple[Frame | None, Inspection]:
         """A frame, or why there is none."""
-        start = time.perf_counter()
-        frame, reason = None, Reason.INTERNAL
-        if not self._camera_there:
-            reason = Reason.CAMERA_LOST
-        else:
-            try:
-                frame = self._camera.grab()
-            except FrameTimeout as error:
-                log.warning("%s", error)
-                reason = Reason.NO_FRAME
-            except FrameDamaged as error:
-                log.warning("%s", error)
-                reason = Reason.WRONG_SIZE if error.wrong_size else Reason.INCOMPLETE_FRAME
-            except CameraLost as error:
-                self._lost(str(error))
-                reason = Reason.CAMERA_LOST
-        return frame, Inspection.error(reason, timing=Timing(grab_ms=(time.perf_counter() - start) * 1000))
+        frame, reason, grab_ms = self._camera.grab()
+        return frame, Inspection.error(reason or Reason.INTERNAL, timing=Timing(grab_ms=grab_ms))
 
     def _judge(self, frame: Frame, timing: Timing) -> Inspection:
         try:

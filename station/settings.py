@@ -46,6 +46,8 @@ class ReplaySettings(Section):
     kind: Literal["replay"]
     folder: Path
 
+    reconnect_s: float = Field(default=1.0, ge=0.05, le=60)
+
     @property
     def origin(self) -> Origin:
         """Replayed parts read TEST to the PLC."""

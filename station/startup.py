@@ -13,6 +13,7 @@ from station.archive.prune import Housekeeping
 from station.archive.reader import Wanted, find
 from station.archive.writer import Archive
 from station.camera.port import Camera
+from station.camera.reconnecting import ReconnectingCamera
 from station.channel import Inbox, Publisher
 from station.cycle import Cycle, Listener
 from station.domain import Purpose, Verdict
@@ -44,7 +45,7 @@ def make_cycle(settings: Settings, loaded: Loaded, line: Line, archive: Archive,
     """The cycle that the settings describe; recipes are loaded by the same settings."""
     masters = {serial: Verdict(found) for serial, found in settings.golden.masters.items()}
     return Cycle(
-        camera=make_camera(settings),
+        camera=ReconnectingCamera(make_camera(settings), settings.camera.reconnect_s),
         origin=settings.camera.origin,
         line=line,
         archive=archive,
@@ -52,7 +53,6 @@ def make_cycle(settings: Settings, loaded: Loaded, line: Line, archive: Archive,
         prepare=lambda number: prepare(settings, number),
         watch=Watch(loaded, masters, _wrong_masters(settings.archive.folder, masters), settings.model.self_test_s),
         listener=listener,
-        reconnect_s=settings.camera.reconnect_s if isinstance(settings.camera, PylonSettings) else 1.0,
     )
 
 

@@ -16,10 +16,11 @@ import pytest
 from deploy.demo import free_ports
 from station.archive.reader import read_records
 from station.archive.writer import Archive
+from station.camera.pylon import PylonCamera
 from station.classify.drift import Reference, write_reference
 from station.classify.onnx import LOOK
 from station.cycle import Listener
-from station.domain import Image, Purpose, Reason, Verdict
+from station.domain import Frame, Image, Purpose, Reason, Verdict
 from station.errors import ModelError, RecordError
 from station.events import Event, PartEvent
 from station.plc.line import ModbusLine, make_line
@@ -267,14 +268,33 @@ def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(station: Stati
     assert [r.verdict for e in read_records(station.folder) if (r := e.record) is not None] == [Verdict.ERROR] * 3 + [Verdict.OK]
 
 
-def test_a_record_that_cannot_be_written_is_error(station: Station, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_arguments: object) -> None:
-        raise RecordError("disk full")
+@pytest.mark.parametrize("fault", [RecordError("disk full"), RuntimeError("nobody foresaw this")])
+def test_a_record_that_cannot_be_written_is_error(
+    station: Station, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch, fault: Exception
+) -> None:
+    def fails(*_arguments: object) -> None:
+        raise fault
 
-    monkeypatch.setattr(Archive, "commit", full)
+    monkeypatch.setattr(Archive, "commit", fails)
     (answer,) = station.run([frames[label_with("OK")["frame"]]])
     assert (answer.verdict, answer.reason) == (VerdictCode.ERROR, REASON_CODES[Reason.RECORD_FAILED])
     assert not answer.accepted
+
+
+def test_a_camera_fault_that_nobody_foresaw_costs_one_part_and_leaves_a_record(
+    station: Station, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good, grab, faults = frames[label_with("OK")["frame"]], PylonCamera.grab, [ValueError("nobody foresaw this")]
+
+    def fails_once(camera: PylonCamera) -> Frame:
+        if faults:
+            raise faults.pop()
+        return grab(camera)
+
+    monkeypatch.setattr(PylonCamera, "grab", fails_once)
+    answers = station.run([good, good])
+    assert [(a.verdict, a.reason) for a in answers] == [(VerdictCode.ERROR, REASON_CODES[Reason.INTERNAL]), (VerdictCode.OK, 0)]
+    assert [r.inspection.reason for e in read_records(station.folder) if (r := e.record) is not None] == [Reason.INTERNAL, None]
 
 
 def test_the_verdict_is_seen_only_after_its_record_is_on_disk(

@@ -1,0 +1,75 @@
+"""A camera that is opened, watched while idle and opened again after a loss; every grab ends in a frame or a reason."""
+
+import logging
+import time
+
+from station.camera.port import Camera
+from station.domain import Frame, Reason
+from station.errors import CameraLost, FrameDamaged, FrameTimeout
+
+log = logging.getLogger("weldgate.camera")
+
+ALIVE_S = 1.0
+"""Between two questions whether it still answers."""
+
+
+class ReconnectingCamera:
+    """Use from one thread."""
+
+    def __init__(self, camera: Camera, reconnect_s: float) -> None:
+        """`reconnect_s`: pause between two attempts to open it."""
+        self._camera, self._reconnect_s = camera, reconnect_s
+        self._tried_s = self._alive_s = -1e9
+        self.there = False
+        self.message = "camera not opened yet"
+        """Why it is not there; empty if it is."""
+
+    def look_after(self) -> None:
+        """Open it if it is time to; ask it, while idle, whether it still answers."""
+        now = time.monotonic()
+        if self.there and now - self._alive_s >= ALIVE_S:
+            self._alive_s = now
+            if not self._camera.alive():
+                self._lost("camera stopped answering")
+        if not self.there and now - self._tried_s >= self._reconnect_s:
+            try:
+                self._camera.open()
+            except CameraLost as error:
+                self._lost(str(error))
+            else:
+                log.info("camera opened")
+                self.there, self.message, self._alive_s = True, "", now
+            self._tried_s = time.monotonic()
+
+    def grab(self) -> tuple[Frame | None, Reason | None, float]:
+        """A frame, or why there is none; and the milliseconds it took."""
+        start = time.perf_counter()
+        frame, reason = None, None
+        if not self.there:
+            reason = Reason.CAMERA_LOST
+        else:
+            try:
+                frame = self._camera.grab()
+            except FrameTimeout as error:
+                log.warning("%s", error)
+                reason = Reason.NO_FRAME
+            except FrameDamaged as error:
+                log.warning("%s", error)
+                reason = Reason.WRONG_SIZE if error.wrong_size else Reason.INCOMPLETE_FRAME
+            except CameraLost as error:
+                self._lost(str(error))
+                reason = Reason.CAMERA_LOST
+            except Exception:  # the part must get its record: any fault is "no picture"
+                log.exception("the camera ended with a fault")
+                self._lost("camera ended with a fault, see the log")
+                reason = Reason.INTERNAL
+        return frame, reason, (time.perf_counter() - start) * 1000
+
+    def _lost(self, message: str) -> None:
+        if message != self.message:
+            log.warning("%s", message)
+        self.there, self.message = False, message
+
+    def close(self) -> None:
+        """Let go of the device."""
+        self._camera.close()
