@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import binomtest
 
 from models.crops import HOLE, MISSING, OK
 from station.classify.decision import Thresholds
@@ -50,14 +49,6 @@ def refused(scores: Array, thresholds: Thresholds) -> Flags:
     """The station's decision (`station.classify.decision.segment_kind`) on scores (N, 3)."""
     over = (scores[:, HOLE] >= thresholds.hole) | (scores[:, MISSING] >= thresholds.missing_weld)
     return np.asarray(over | (scores[:, OK] <= scores[:, 1:].max(axis=1)), bool)
-
-
-def interval(hits: int, trials: int) -> tuple[float, float]:
-    """95 % confidence interval of a share (Clopper and Pearson); (0, 1) without trials."""
-    if not trials:
-        return 0.0, 1.0
-    found = binomtest(hits, trials).proportion_ci(0.95, method="exact")
-    return float(found.low), float(found.high)
 
 
 def calibration_error(nok: Array, truth: Flags, weights: Array | None = None, bins: int = 10) -> float:

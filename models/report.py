@@ -14,8 +14,9 @@ import numpy as np
 
 from models.crops import OK
 from models.evaluate import Evaluation
-from models.measures import ESCAPE_COST, calibration_error, count, interval
+from models.measures import ESCAPE_COST, calibration_error, count
 from station.classify.onnx import CLASSES
+from station.report.truth import interval
 
 SIZES_MM = (0.0, 0.15, 0.3, 0.6, 1.2, 1e9)
 

@@ -51,10 +51,14 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument("-c", "--settings", type=Path, metavar="FILE", help="settings file (default: the shipped limits and model)")
     replay.add_argument("--recipe", type=int, default=1, metavar="N", help="recipe of the settings (default: %(default)s)")
     replay.add_argument("--model", type=Path, metavar="FILE", help="another classifier")
-    replay.add_argument("--um-per-px", type=float, default=13.0, metavar="UM", help="scale of the images (default: %(default)s)")
+    replay.add_argument("--um-per-px", type=float, metavar="UM", help="scale of the images (default: that of the settings)")
     replay.add_argument("--processes", type=int, metavar="N", help="default: one for each core")
     replay.add_argument("--json", type=Path, metavar="FILE", help="write all results as JSON; an interrupted run goes on where it stopped")
     replay.add_argument("--csv", type=Path, metavar="FILE", help="write a table")
+    replay.add_argument(
+        "--report", type=Path, metavar="DIR", help="write report.html: counts, verdicts that flip and errors, with pictures"
+    )
+    replay.add_argument("--truth", type=Path, metavar="FILE", help="what the images show, for --report: CSV with name and verdict, or JSON")
     add("check", _check, "say what is wrong with settings, model, archive, camera and port, and what to do")
     add_commands(commands.add_parser("records", help="list, verify, prune and export the records of an archive; edges on the bus"))
     registers = add("registers", _registers, "print the register map", settings=False)

@@ -30,6 +30,15 @@ def _address(settings: ChannelSettings, port: int) -> str:
     return f"tcp://{host}:{port}"
 
 
+def _bind(context: "zmq.Context[zmq.Socket[bytes]]", socket: "zmq.Socket[bytes]", address: str, key: str) -> None:
+    """Listen; if the port is taken nothing stays open. Raises LineError."""
+    try:
+        socket.bind(address)
+    except zmq.ZMQError as error:
+        context.destroy(linger=0)
+        raise LineError(f"channel cannot listen on {address} ({error}); free it or set channel.{key}") from None
+
+
 class Publisher:
     """The engine's end. Use from one thread."""
 
@@ -42,11 +51,7 @@ class Publisher:
             (self._events, settings.events_port, "events_port"),
             (self._previews, settings.preview_port, "preview_port"),
         ):
-            try:
-                socket.bind(_address(settings, port))
-            except zmq.ZMQError as error:
-                self.close()
-                raise LineError(f"channel cannot listen on {_address(settings, port)} ({error}); free it or set channel.{key}") from None
+            _bind(self._context, socket, _address(settings, port), key)
 
     def _socket(self, high_water: int) -> "zmq.Socket[bytes]":
         socket = self._context.socket(zmq.PUB)
@@ -124,12 +129,7 @@ class Inbox:
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.PULL)
         self._socket.setsockopt(zmq.IPV6, 1)
-        try:
-            self._socket.bind(_address(settings, settings.requests_port))
-        except zmq.ZMQError as error:
-            self.close()
-            address = _address(settings, settings.requests_port)
-            raise LineError(f"channel cannot listen on {address} ({error}); free it or set channel.requests_port") from None
+        _bind(self._context, self._socket, _address(settings, settings.requests_port), "requests_port")
 
     def asked(self) -> bool:
         """Whether a test picture was asked for just now; however often, it is one."""

@@ -32,6 +32,7 @@ def add_commands(records: argparse.ArgumentParser) -> None:
     report = add("report", _report, "write a report: yield, findings by angle, trends, NOK parts, who judged")
     report.add_argument("target", type=Path, metavar="FILE", help=".html, with everything in it, or .pdf")
     report.add_argument("--title", default="weldgate: report", help="default: %(default)s")
+    report.add_argument("--truth", type=Path, metavar="FILE", help="what the parts are: CSV with name (serial) and verdict, or JSON")
     _search_options(report)
     add("bus", _bus, "print the edges on the PLC bus, and what was against the rules")
 
@@ -57,7 +58,17 @@ def _time(text: str) -> datetime:
 
 def _wanted(a: argparse.Namespace) -> Wanted:
     score = 0.05 if a.segment is not None and a.score is None else a.score
-    return Wanted(None, a.serial, a.since, a.until, a.verdict, a.reason, a.segment, score, a.last is not None, a.last)
+    return Wanted(
+        serial=a.serial,
+        since=a.since,
+        until=a.until,
+        verdict=a.verdict,
+        reason=a.reason,
+        segment=a.segment,
+        min_score=score,
+        newest_first=a.last is not None,
+        limit=a.last,
+    )
 
 
 def _list(arguments: argparse.Namespace) -> int:
@@ -112,11 +123,13 @@ def _export(arguments: argparse.Namespace) -> int:
 def _report(arguments: argparse.Namespace) -> int:
     from station.report.page import report
     from station.report.pdf import write_pdf
+    from station.report.truth import read_truth
 
     if not arguments.target.resolve().parent.is_dir() or arguments.target.is_dir():
         raise RecordError(f"{arguments.target}: cannot be written there; name a file in an existing folder")
     entries = sorted(read_records(arguments.folder, _wanted(arguments)), key=lambda e: e.row.inspection_id)
-    page = report(entries, arguments.folder, arguments.title)
+    truth = None if arguments.truth is None else read_truth(arguments.truth)
+    page = report(entries, arguments.folder, arguments.title, truth)
     if arguments.target.suffix.lower() == ".pdf":
         write_pdf(page, arguments.target)
     else:

@@ -8,13 +8,15 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from station.archive.decided import segment_kinds
 from station.archive.reader import Listed
-from station.domain import SEGMENTS, Inspection
+from station.domain import SEGMENTS, Inspection, Reason
 from station.errors import ImageError, LocateError, RecordError
 from station.imagefile import encode_png, read_image
 from station.vision.unwrap import segments, unwrap
 
 FORMATS = ("csv", "json", "parquet", "dataset", "dfq")
+CLASS_FOLDERS = {None: "ok", Reason.HOLE: "hole", Reason.MISSING_WELD: "missing_weld"}
 SEPARATOR, ADDITIONAL = "\x0f", "\x14"
 """Q-DAS ASCII transfer format: between characteristics, and between a value and what belongs to it."""
 
@@ -96,7 +98,7 @@ def _parquet(target: Path, entries: list[Listed]) -> None:
 
 def _dataset(entries: list[Listed], folder: Path, target: Path) -> Iterator[tuple[Path, str]]:
     """ok, hole, missing_weld: crops by what the station found, for people to correct before anything is trained on them."""
-    for name in ("ok", "hole", "missing_weld"):
+    for name in CLASS_FOLDERS.values():
         (target / name).mkdir(parents=True)
     for entry in entries:
         record = entry.record
@@ -107,12 +109,8 @@ def _dataset(entries: list[Listed], folder: Path, target: Path) -> Iterator[tupl
         except (ImageError, LocateError) as error:
             yield entry.path, str(error)
             continue
-        for index, (crop, scores) in enumerate(zip(segments(strip), record.inspection.scores, strict=True), start=1):
-            limits = record.provenance
-            over = {"hole": scores.hole / limits.hole_threshold, "missing_weld": scores.missing_weld / limits.missing_threshold}
-            worst = max(over, key=lambda kind: over[kind])
-            kind = worst if over[worst] >= 1 else "ok"
-            (target / kind / f"{record.inspection_id:08d}_{index:02d}.png").write_bytes(encode_png(crop))
+        for index, (crop, kind) in enumerate(zip(segments(strip), segment_kinds(record), strict=True), start=1):
+            (target / CLASS_FOLDERS[kind] / f"{record.inspection_id:08d}_{index:02d}.png").write_bytes(encode_png(crop))
 
 
 def _dfq(target: Path, entries: list[Listed]) -> None:

@@ -97,8 +97,6 @@ class State:
     """Being carried out."""
     commands: int = 0
     """Commands handed to the station so far."""
-    heard: Command | None = None
-    """The last of them."""
     result: Result | None = None
     shown_s: float = 0.0
     process_ms: int = 0
@@ -133,8 +131,7 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
     s = _clocks(state, inputs, now_s, times)
     s = replace(s, control=inputs.control)
     s = _acknowledge(s, inputs, rising, now_s, times)
-    s, rising = _commanded(s, inputs, rising, now_s, times)
-    command = s.heard if s.commands > state.commands else None
+    s, rising, command = _commanded(s, inputs, rising, now_s, times)
     offline = _offline(s, inputs, now_s, times)
     s = replace(s, offline=offline)
     start: Trigger | None = None
@@ -202,18 +199,18 @@ def _acknowledge(s: State, inputs: Inputs, rising: Control, now_s: float, times:
     return s
 
 
-def _commanded(s: State, inputs: Inputs, rising: Control, now_s: float, times: Times) -> tuple[State, Control]:
-    """The state with the command heard, and the edges with what it stands for."""
+def _commanded(s: State, inputs: Inputs, rising: Control, now_s: float, times: Times) -> tuple[State, Control, Command | None]:
+    """The state with the command heard, the edges with what it stands for, and what the station must do."""
     if s.command is not None:
         done = inputs.command_done is not None and inputs.command_done[0] == s.command.number
         if done or now_s - s.command.since_s > times.command_s:
             well = done and inputs.command_done is not None and inputs.command_done[1]
             s = replace(s, cmd_done=True, cmd_echo=s.command.code if well else REFUSED, command=None)
     if not inputs.control & Control.EXEC_COMMAND:
-        return replace(s, cmd_done=False), rising
+        return replace(s, cmd_done=False), rising, None
     if not rising & Control.EXEC_COMMAND:
-        return s, rising
-    code = inputs.command
+        return s, rising, None
+    code, command = inputs.command, None
     if code in (CommandCode.RESET, CommandCode.ACK_ERROR):
         s = replace(s, error=False, missed=False, error_code=0)
         if code == CommandCode.RESET and s.phase is Phase.SHOWN:
@@ -221,13 +218,14 @@ def _commanded(s: State, inputs: Inputs, rising: Control, now_s: float, times: T
     elif code == CommandCode.ABORT:
         rising |= Control.ABORT
     elif code in (CommandCode.RESET_COUNTERS, CommandCode.TIME_SYNC):
-        s = replace(s, heard=Command(CommandCode(code), inputs.arg, s.commands + 1, now_s), commands=s.commands + 1)
+        command = Command(CommandCode(code), inputs.arg, s.commands + 1, now_s)
+        s = replace(s, commands=command.number)
     elif code == CommandCode.LOAD_RECIPE and s.command is None and s.phase in (Phase.OFFLINE, Phase.IDLE):
         command = Command(CommandCode.LOAD_RECIPE, inputs.arg, s.commands + 1, now_s)
-        return replace(s, cmd_done=False, command=command, heard=command, commands=command.number), rising
+        return replace(s, cmd_done=False, command=command, commands=command.number), rising, command
     else:
         code = REFUSED
-    return replace(s, cmd_done=True, cmd_echo=code), rising
+    return replace(s, cmd_done=True, cmd_echo=code), rising, command
 
 
 def _offline(s: State, inputs: Inputs, now_s: float, times: Times) -> Offline:

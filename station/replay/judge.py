@@ -13,9 +13,6 @@ from station.imagefile import read_marked
 from station.inspection import Inspector
 from station.replay.files import Source
 
-OWN_UM_PER_PX = 13.0
-"""Scale that networks and strips are made for."""
-
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
@@ -28,13 +25,12 @@ class Outcome:
     warnings: tuple[str, ...] = ()
 
 
-def judge(inspector: Inspector, source: Source, um_per_px: float = OWN_UM_PER_PX) -> Outcome:
-    """Read, bring to the scale of the station, inspect."""
+def judge_image(inspector: Inspector, source: Source, factor: float) -> Outcome:
+    """Read, make larger by `factor`, which brings it to the scale of the settings, inspect."""
     try:
         image, warnings = read_marked(source.path)
     except ImageError as error:
         return Outcome(source.name, _error(str(error)), str(error))
-    factor = um_per_px / OWN_UM_PER_PX
     try:
         inspection = inspector.inspect(image if factor == 1 else _scaled(image, factor))
     except Exception as error:  # noqa: BLE001 - one image must not end the others

@@ -8,15 +8,16 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import asdict
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TextIO
 
 from station.errors import ModelError
 from station.inspection import Inspector
 from station.recipe import load_inspector
+from station.records import Provenance
 from station.replay.files import Source
-from station.replay.judge import Outcome, judge
+from station.replay.judge import Outcome, judge_image
 from station.settings import Settings
 
 AHEAD = 4
@@ -25,13 +26,16 @@ AHEAD = 4
 _inspector: Inspector | None = None
 
 
-def replay(sources: Sequence[Source], settings: Settings, um_per_px: float, processes: int, part: Path | None) -> Iterator[Outcome]:
-    """Outcomes in the order in which they come. `part`: file of an interrupted run, continued and kept until the caller removes it.
+def replay(
+    sources: Sequence[Source], settings: Settings, judge: tuple[Inspector, Provenance], factor: float, processes: int, part: Path | None
+) -> Iterator[Outcome]:
+    """Outcomes in the order in which they come; images are made larger by `factor` first.
 
-    Raises ModelError.
+    `judge` is loaded from the settings. `part`: file of an interrupted run, continued and kept until the caller removes it. Raises
+    ModelError.
     """
-    inspector, provenance = load_inspector(settings)
-    key = hashlib.sha256(f"{asdict(provenance)} {um_per_px}".encode()).hexdigest()
+    inspector, provenance = judge
+    key = hashlib.sha256(f"{asdict(provenance)} {factor}".encode()).hexdigest()
     known = {} if part is None else _known(part, key)
     todo = []
     for source in sources:
@@ -43,7 +47,7 @@ def replay(sources: Sequence[Source], settings: Settings, um_per_px: float, proc
     with ExitStack() as stack:
         file = None if part is None else stack.enter_context(_opened(part, key, bool(known)))
         plain = processes == 1 or len(todo) < 2 * processes
-        for mark, outcome in _plainly(todo, inspector, um_per_px) if plain else _pooled(todo, settings, um_per_px, processes):
+        for mark, outcome in _plainly(todo, inspector, factor) if plain else _pooled(todo, settings, factor, processes):
             if file is not None and outcome.problem is None:
                 file.write(json.dumps([mark, asdict(outcome)]) + "\n")
                 file.flush()
@@ -53,19 +57,19 @@ def replay(sources: Sequence[Source], settings: Settings, um_per_px: float, proc
 Marked = tuple[Source, str]
 
 
-def _plainly(todo: list[Marked], inspector: Inspector, um_per_px: float) -> Iterator[tuple[str, Outcome]]:
+def _plainly(todo: list[Marked], inspector: Inspector, factor: float) -> Iterator[tuple[str, Outcome]]:
     for source, mark in todo:
-        yield mark, judge(inspector, source, um_per_px)
+        yield mark, judge_image(inspector, source, factor)
 
 
-def _pooled(todo: list[Marked], settings: Settings, um_per_px: float, processes: int) -> Iterator[tuple[str, Outcome]]:
+def _pooled(todo: list[Marked], settings: Settings, factor: float, processes: int) -> Iterator[tuple[str, Outcome]]:
     model = settings.model.model_copy(update={"threads": 1, "reference_path": None})
     alone = settings.model_copy(update={"model": model})
     waiting: list[tuple[str, Future[Outcome]]] = []
     with ProcessPoolExecutor(processes, get_context("spawn"), _begin, (alone,)) as pool:
         try:
             for source, mark in todo:
-                waiting.append((mark, pool.submit(_judge, source, um_per_px)))
+                waiting.append((mark, pool.submit(_judge, source, factor)))
                 if len(waiting) >= AHEAD * processes:
                     mark, future = waiting.pop(0)
                     yield mark, future.result()
@@ -80,18 +84,28 @@ def _pooled(todo: list[Marked], settings: Settings, um_per_px: float, processes:
 def _begin(settings: Settings) -> None:
     global _inspector  # one for each process of the pool
     import signal
+    import threading
 
     import cv2
 
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends the work
     cv2.setNumThreads(1)
     _inspector = load_inspector(settings)[0]
 
 
-def _judge(source: Source, um_per_px: float) -> Outcome:
+def _end_with_parent() -> None:
+    """A parent that was killed cannot end its processes."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _judge(source: Source, factor: float) -> Outcome:
     if _inspector is None:
         raise RuntimeError("the process was not begun")
-    return judge(_inspector, source, um_per_px)
+    return judge_image(_inspector, source, factor)
 
 
 def _mark(source: Source) -> str:
@@ -129,10 +143,3 @@ def _opened(part: Path, key: str, more: bool) -> TextIO:
     file.write(key + "\n")
     file.flush()
     return file
-
-
-def write_json(path: Path, entries: dict[str, dict[str, Any]]) -> None:
-    """The whole report, or nothing. Raises OSError."""
-    part = path.with_name(path.name + ".new")
-    part.write_text(json.dumps(entries, indent=1))
-    part.replace(path)

@@ -1,22 +1,18 @@
 """What a lot or a shift brought: counts, where and what was found, trends, the NOK parts, who judged."""
 
-import base64
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
-import cv2
-import numpy as np
-
+from station.archive.decided import segment_kinds
 from station.archive.reader import Listed
-from station.classify.decision import Thresholds, segment_kind
-from station.domain import SEGMENT_PX, Purpose, Verdict
-from station.errors import ImageError, LocateError, RecordError
-from station.imagefile import read_image
+from station.domain import SEGMENT_DEG, Purpose, Verdict
+from station.errors import RecordError
 from station.records import Record
 from station.report.figures import angle_counts, bars, clock_face, trend
-from station.vision.unwrap import unwrap
+from station.report.strip import strip
+from station.report.truth import Errors, errors, interval
 
 DOTS = 2000
 """Parts in a trend; of more, every second, third and so on."""
@@ -30,8 +26,8 @@ STYLE = (
 )
 
 
-def report(entries: Sequence[Listed], folder: Path, title: str) -> str:
-    """The page as HTML text. Raises RecordError if no part is among the entries."""
+def report(entries: Sequence[Listed], folder: Path, title: str, truth: Mapping[str, str] | None = None) -> str:
+    """The page as HTML text; `truth`: what the serials are. Raises RecordError if no part is among the entries."""
     unreadable = [(e.path, e.problem) for e in entries if e.problem is not None]
     records = [e.record for e in entries if e.record is not None and e.record.purpose is Purpose.PART]
     if not records:
@@ -39,6 +35,7 @@ def report(entries: Sequence[Listed], folder: Path, title: str) -> str:
     parts = [
         f"<h1>{escape(title)}</h1>",
         _summary(records, sum(e.shown_to_plc is False for e in entries if e.record is not None and e.record.purpose is Purpose.PART)),
+        "" if truth is None else _against_truth(records, folder, truth),
         _found(records),
         _trends(records),
         _gallery(records, folder),
@@ -47,7 +44,41 @@ def report(entries: Sequence[Listed], folder: Path, title: str) -> str:
     if unreadable:
         rows = "".join(f"<tr><td>{escape(path.name)}</td><td>{escape(str(problem))}</td></tr>" for path, problem in unreadable)
         parts.append(f"<h2 class=bad>Records with problems</h2><table>{rows}</table>")
+    return whole(title, parts)
+
+
+def whole(title: str, parts: Sequence[str]) -> str:
+    """The page around its parts."""
     return f"<!doctype html><html lang=en><meta charset=utf-8><title>{escape(title)}</title><style>{STYLE}</style>{''.join(parts)}</html>\n"
+
+
+def truth_table(found: Errors) -> str:
+    """Both kinds of error, with their intervals."""
+    rows = "".join(
+        f"<tr><th>{name}</th><td>{_share(len(names), of)}</td></tr>"
+        for name, names, of in (
+            ("escapes (NOK judged OK)", found.escapes, found.nok),
+            ("false rejects (OK judged NOK)", found.false_rejects, found.ok),
+            ("not judged", found.not_judged, found.ok + found.nok),
+        )
+    )
+    return f"<h2>Against the truth</h2><table>{rows}</table>"
+
+
+def _share(count: int, of: int) -> str:
+    low, high = interval(count, of)
+    return f"{count} of {of}, {count / of:.1%} (95 %: {low:.1%} to {high:.1%})" if of else "no such part"
+
+
+def _against_truth(records: Sequence[Record], folder: Path, truth: Mapping[str, str]) -> str:
+    by_serial = {record.serial: record for record in records}  # of a part that was judged twice, the last
+    found = errors(truth, {serial: str(record.verdict) for serial, record in by_serial.items()})
+    wrong = [("Escapes", found.escapes), ("False rejects", found.false_rejects)]
+    return truth_table(found) + "".join(
+        f"<h3>{name}</h3>" + "".join(_figure(by_serial[serial], folder) for serial in serials[:GALLERY])
+        for name, serials in wrong
+        if serials
+    )
 
 
 def _summary(records: Sequence[Record], not_shown: int) -> str:
@@ -64,15 +95,9 @@ def _summary(records: Sequence[Record], not_shown: int) -> str:
     return "<table>" + "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows) + "</table>"
 
 
-def nok_segments(record: Record) -> list[bool]:
-    """The 21 decisions of a record by its own thresholds."""
-    limits = Thresholds(record.provenance.hole_threshold, record.provenance.missing_threshold)
-    return [segment_kind(s, limits) is not None for s in record.inspection.scores]
-
-
 def _found(records: Sequence[Record]) -> str:
     reasons = Counter(str(record.inspection.reason) for record in records if record.inspection.reason is not None)
-    judged = [nok_segments(record) for record in records if record.inspection.scores]
+    judged = [[kind is not None for kind in segment_kinds(record)] for record in records if record.inspection.scores]
     if not reasons:
         return "<h2>Findings</h2><p>None.</p>"
     return f"<h2>Findings by kind and angle</h2><div class=row>{bars(list(reasons.items()))}{clock_face(angle_counts(judged))}</div>"
@@ -105,24 +130,14 @@ def _figure(record: Record, folder: Path) -> str:
     said = "; ".join(
         f"{f.kind} at {f.start_deg:.0f}°, {f.length_mm:.2f} mm long" + ("" if f.area_mm2 is None else f", {f.area_mm2:.2f} mm²")
         for f in record.inspection.findings
-    )
+    ) or str(record.verdict)
     caption = f"<b>{record.inspection_id}</b> {escape(record.serial)}, {record.grabbed_at:%Y-%m-%d %H:%M:%S}: {escape(said)}"
     return f"<figure>{_strip(record, folder)}<figcaption>{caption}</figcaption></figure>"
 
 
 def _strip(record: Record, folder: Path) -> str:
-    if record.frame_file is None or record.inspection.ring is None:
-        return "<p>no picture</p>"
-    try:
-        strip = cv2.cvtColor(unwrap(read_image(folder / record.frame_file), record.inspection.ring), cv2.COLOR_GRAY2BGR)
-    except (ImageError, LocateError):
-        return "<p>its picture is no longer kept, or cannot be read</p>"
-    for index, bad in enumerate(nok_segments(record)):
-        if bad:
-            x = index * SEGMENT_PX
-            cv2.rectangle(strip, (x + 2, 2), (x + SEGMENT_PX - 3, strip.shape[0] - 3), (43, 57, 192), 4)
-    done, jpeg = cv2.imencode(".jpg", np.asarray(strip), [cv2.IMWRITE_JPEG_QUALITY, 80])
-    return f'<img alt="unwrapped weld" src="data:image/jpeg;base64,{base64.b64encode(bytes(jpeg)).decode()}">' if done else ""
+    refused = ((i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i, kind in enumerate(segment_kinds(record)) if kind is not None)
+    return strip(None if record.frame_file is None else folder / record.frame_file, record.inspection.ring, refused)
 
 
 def _identity(records: Sequence[Record]) -> str:

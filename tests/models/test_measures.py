@@ -4,10 +4,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from models.crops import HOLE, MISSING, OK
-from models.measures import Counts, calibration_error, choose_thresholds, count, interval, refused
+from models.measures import Counts, calibration_error, choose_thresholds, count, refused
 from models.novelty import describe, distances, limit, part_distances
 from station.classify.decision import Thresholds, segment_kind
 from station.domain import SegmentScores
+from station.report.truth import interval
 
 
 def test_the_papers_equations() -> None:

@@ -4,30 +4,18 @@ import random
 import socket
 import struct
 import threading
-from collections.abc import Iterator
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deploy.demo import free_ports
 from station.plc.framing import frames
-from station.plc.line import ModbusLine, make_line
+from station.plc.line import ModbusLine
 from station.plc.port import Health
 from station.plc.registers import STATUS_WORDS, Offline
-from station.settings import PlcSettings
 
 FRAMED, NOISE = 92_000, 8_000
 BATCH = 10
-
-
-@pytest.fixture
-def line() -> Iterator[ModbusLine]:
-    kept = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
-    kept.start()
-    kept.checked_in(Health(True, Offline.NONE, False, 7))
-    yield kept
-    kept.stop()
 
 
 @given(st.lists(st.tuples(st.integers(0, 65535), st.binary(min_size=2, max_size=254)), max_size=6), st.integers(0, 1500))

@@ -3,28 +3,16 @@
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from deploy.demo import free_ports
 from deploy.judge import Judge
-from station.plc.line import ModbusLine, make_line
-from station.plc.port import Health, Result, Trigger
-from station.plc.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Flags, Offline, VerdictCode
-from station.settings import PlcSettings
+from station.plc.line import ModbusLine
+from station.plc.port import Result, Trigger
+from station.plc.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Flags, VerdictCode
 
 HERE = Path(__file__).resolve().parent
-
-
-@pytest.fixture
-def line() -> Iterator[ModbusLine]:
-    kept = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0, writer_idle_ms=100))
-    kept.start()
-    kept.checked_in(Health(True, Offline.NONE, False, 7))
-    yield kept
-    kept.stop()
 
 
 def mbpoll(line: ModbusLine, *arguments: str) -> tuple[int, str]:

@@ -3,28 +3,17 @@
 import asyncio
 import socket
 import time
-from collections.abc import Iterator
 
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
-from deploy.demo import free_ports
 from station.errors import LineError
 from station.plc.line import ModbusLine, make_line
-from station.plc.port import Health, Result, Trigger
-from station.plc.registers import Flags, Offline, VerdictCode
+from station.plc.port import Result, Trigger
+from station.plc.registers import Flags, VerdictCode
 from station.settings import PlcSettings
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:pymodbus")
-
-
-@pytest.fixture
-def line() -> Iterator[ModbusLine]:
-    server = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
-    server.start()
-    server.checked_in(Health(True, Offline.NONE, False, 7))
-    yield server
-    server.stop()
 
 
 def talk(line: ModbusLine, conversation: object) -> object:

@@ -106,7 +106,7 @@ def test_wrong_options_are_one_line(option: list[str], capsys: pytest.CaptureFix
 
 def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     command = ["replay", str(FRAMES), "--json", str(tmp_path / "out.json"), "--processes", "1"]
-    judge, judged = station.replay.run.judge, []
+    judge, judged = station.replay.run.judge_image, []
 
     def until_the_third(*arguments: object) -> object:
         judged.append(arguments[1])
@@ -114,7 +114,7 @@ def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path: Path, monkeypatch
             raise KeyboardInterrupt
         return judge(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(station.replay.run, "judge", until_the_third)
+    monkeypatch.setattr(station.replay.run, "judge_image", until_the_third)
     assert main(command) == 130
     part = tmp_path / "out.json.part"
     assert not (tmp_path / "out.json").exists()

@@ -1,0 +1,19 @@
+from collections.abc import Iterator
+
+import pytest
+
+from deploy.demo import free_ports
+from station.plc.line import ModbusLine, make_line
+from station.plc.port import Health
+from station.plc.registers import Offline
+from station.settings import PlcSettings
+
+
+@pytest.fixture
+def line() -> Iterator[ModbusLine]:
+    """A station that is a server and well; the right to write is soon free for the next peer."""
+    kept = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0, writer_idle_ms=100))
+    kept.start()
+    kept.checked_in(Health(True, Offline.NONE, False, 7))
+    yield kept
+    kept.stop()
