@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from time import perf_counter
 
+import cv2
 import numpy as np
 from rich.console import Console
 from rich.table import Table
@@ -17,7 +18,7 @@ from station.archive.reader import Wanted, find
 from station.archive.schema import open_index
 from station.archive.writer import Archive
 from station.domain import SEGMENTS, Frame, Inspection, Origin, Ring, SegmentScores, Verdict
-from station.imagefile import encode_png, read_image
+from station.imagefile import PNG, encode_png, read_image
 from station.records import Part, Provenance
 from station.settings import ArchiveSettings
 
@@ -38,7 +39,35 @@ def main(_argv: Sequence[str] | None = None) -> int:
                 taken.append((perf_counter() - start) * 1000)
             table.add_row(what, f"{statistics.median(taken):.1f}", f"{max(taken):.1f}")
     Console(width=110).print(table)
+    _codecs(Console(width=110))
     return 0
+
+
+def _codecs(console: Console) -> None:
+    """Lossless codecs side by side, in turns, on one thread."""
+    images = [read_image(part.path) for part in shipped_parts()]
+    level1, none = (cv2.IMWRITE_PNG_COMPRESSION, 1), (cv2.IMWRITE_TIFF_COMPRESSION, 1)
+    codecs: dict[str, tuple[str, tuple[int, ...]]] = {
+        "PNG, as the station": (".png", PNG),
+        "PNG, level 1": (".png", level1),
+        "PNG, level 1, filter SUB": (".png", (*level1, cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_SUB)),
+        "TIFF, LZW": (".tiff", (cv2.IMWRITE_TIFF_COMPRESSION, 5)),
+        "TIFF, uncompressed": (".tiff", none),
+    }
+    taken: dict[str, list[float]] = {name: [] for name in codecs}
+    sizes = dict.fromkeys(codecs, 0)
+    for image in images:
+        for name, (suffix, options) in codecs.items():
+            start = perf_counter()
+            _, buffer = cv2.imencode(suffix, image, options)
+            taken[name].append((perf_counter() - start) * 1000)
+            sizes[name] += len(buffer)
+    table = Table(
+        "", "median ms", "MB a frame", title=f"lossless codecs, {len(images)} frames of {images[0].shape[1]} x {images[0].shape[0]}"
+    )
+    for name, ms in taken.items():
+        table.add_row(name, f"{statistics.median(ms):.1f}", f"{sizes[name] / len(images) / 1e6:.2f}")
+    console.print(table)
 
 
 def _writing(folder: Path) -> list[tuple[str, Callable[[], object]]]:

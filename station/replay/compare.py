@@ -1,7 +1,7 @@
 """Two judgements of the same parts: which verdicts flip, both ways."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -65,7 +65,8 @@ def compare(sources: Sequence[Source], entries: Mapping[str, dict[str, Any]], ju
         scores, again = [s.nok for s in record.inspection.scores], [s for s in now["segments"] if s is not None]
         if _who(record.provenance) == _who(judge) and record.verdict is not Verdict.ERROR:
             same += 1
-            if scores != again or str(record.verdict) != now["verdict"]:
+            found = [{**asdict(f), "kind": str(f.kind)} for f in record.inspection.findings]
+            if scores != again or found != now["findings"] or str(record.verdict) != now["verdict"]:
                 not_alike.append(source.name)
         if str(record.verdict) != now["verdict"]:
             worst = (max(scores, default=None), max(again, default=None))

@@ -1,6 +1,8 @@
 """Finding records by what people know of them."""
 
 import sqlite3
+import subprocess
+import sys
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -89,3 +91,17 @@ def test_every_search_goes_by_an_index(wanted: Wanted, folder: Path) -> None:
         find(folder, wanted)
     assert seen
     assert not [step for step in seen if step.startswith("SCAN")], seen
+
+
+@pytest.mark.skipif(subprocess.run(["unshare", "-m", "true"], check=False).returncode != 0, reason="needs the right to mount")
+def test_an_archive_on_a_disk_mounted_read_only_can_be_listed_and_verified(tmp_path: Path) -> None:
+    folder = tmp_path / "records"
+    archive = Archive(ArchiveSettings(folder=folder, **ROOMY))
+    archive.commit(archive.begin(None), ok_inspection(), Part("CELL-1", 1, Origin.SIMULATED), provenance(), datetime.now(UTC))
+    archive.close()
+    mount = f"mount --bind '{folder}' '{folder}' && mount -o remount,ro,bind '{folder}' && ! touch '{folder}/x' 2>/dev/null"
+    look = " && ".join(f"'{sys.executable}' -m station records {name} '{folder}'" for name in ("list", "verify"))
+    done = subprocess.run(["unshare", "-m", "sh", "-c", f"{mount} && {look}"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "CELL-1" in done.stdout
+    assert "1 records, 0 problems" in done.stdout
