@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
-.PHONY: help setup demo test lint bench chaos-plc chaos-records clean
+.PHONY: help setup demo test lint bench chaos-plc chaos-records chaos-panel soak-panel screenshots translations clean
 
 help: ## what can be made
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -35,6 +35,18 @@ chaos-plc: $(VENV)/.demo ## 10,000 parts in each PLC mode with both sides misbeh
 
 chaos-records: $(VENV)/.demo ## 300 kills of a writer of records
 	$(BIN)/python -m deploy.chaos_records
+
+chaos-panel: $(VENV)/.demo ## the window killed, restarted and stopped while 600 parts pass
+	$(BIN)/python -m deploy.chaos_panel
+
+soak-panel: $(VENV)/.demo ## eight hours of events through the window in fast motion
+	$(BIN)/python -m deploy.soak_panel
+
+screenshots: $(VENV)/.dev ## every page of the window in both languages and themes, into screenshots/
+	xvfb-run -a -s "-screen 0 1920x1200x24" $(BIN)/python -m deploy.screenshots
+
+translations: $(VENV)/.dev ## texts of the window into weldgate_de.ts, that into weldgate_de.qm
+	$(BIN)/python -m deploy.translations
 
 clean: ## remove the virtual environment
 	rm -rf $(VENV)

@@ -15,11 +15,12 @@ from rich.progress import track
 from rich.table import Table
 
 from deploy.demo import SERIAL, free_ports, shipped_parts
+from station.alarmlog import AlarmLog
 from station.archive.writer import Archive
-from station.cycle import Listener
 from station.errors import WeldgateError
 from station.events import Event, PartEvent
 from station.imagefile import read_image
+from station.listener import Listener
 from station.plc.line import make_line
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.recipe import prepare
@@ -63,7 +64,8 @@ def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
     loaded = prepare(settings, 1)
     archive, line = Archive(settings.archive), make_line(settings.plc)
     line.start()
-    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None))
+    alarm_log = AlarmLog(settings.archive.folder)
+    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None), alarm_log)
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
@@ -73,6 +75,7 @@ def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
         stop.set()
         thread.join(timeout=10)
         line.stop()
+        alarm_log.close()
         archive.close()
     return answers, [e for e in events if isinstance(e, PartEvent)]
 

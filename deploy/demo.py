@@ -69,16 +69,16 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
         feed = Feed(folder / "feed", SERIAL)
         ports = free_ports(4)
         settings = folder / "station.toml"
-        settings.write_text(_settings(records, *ports))
+        settings.write_text(station_toml(records, *ports))
         log = stack.enter_context((folder / "engine.log").open("w"))
         fresh = max(0, arguments.parts - len(shipped_parts()))
         renderer = stack.enter_context(_renderer(folder / "fresh", fresh, arguments.seed)) if fresh else None
         environment = {**os.environ, **feed.environment}
-        engine = stack.enter_context(_process([sys.executable, "-m", "station", "engine", "-c", str(settings)], environment, log))
+        engine = stack.enter_context(running([sys.executable, "-m", "station", "engine", "-c", str(settings)], environment, log))
         if window:
             panel_log = stack.enter_context((folder / "panel.log").open("w"))
             panel = stack.enter_context(
-                _process([sys.executable, "-m", "station", "panel", "-c", str(settings)], dict(os.environ), panel_log)
+                running([sys.executable, "-m", "station", "panel", "-c", str(settings)], dict(os.environ), panel_log)
             )
             time.sleep(1.0)
             if panel.poll() is not None:
@@ -111,7 +111,8 @@ def _has_display() -> bool:
     return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def _settings(records: Path, plc_port: int, events_port: int, preview_port: int, requests_port: int) -> str:
+def station_toml(records: Path, plc_port: int, events_port: int, preview_port: int, requests_port: int) -> str:
+    """Settings of a station with the emulated camera and the shipped networks."""
     shipped = HERE.parent / "models" / "shipped"
     good = next(part.path for part in shipped_parts() if part.truth == "OK")
     return f"""
@@ -136,7 +137,8 @@ requests_port = {requests_port}
 
 
 @contextmanager
-def _process(command: list[str], environment: dict[str, str], log: object) -> "Iterator[subprocess.Popen[bytes]]":
+def running(command: list[str], environment: dict[str, str], log: object) -> "Iterator[subprocess.Popen[bytes]]":
+    """A process that is ended afterwards."""
     process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=HERE.parent)  # type: ignore[call-overload]
     try:
         yield process
@@ -153,7 +155,7 @@ def _process(command: list[str], environment: dict[str, str], log: object) -> "I
 @contextmanager
 def _renderer(out: Path, count: int, seed: int) -> "Iterator[subprocess.Popen[bytes]]":
     command = [sys.executable, "-m", "synth", "part", "--out", str(out), "--count", str(count), "--seed", str(seed)]
-    with _process(command, dict(os.environ), subprocess.DEVNULL) as process:
+    with running(command, dict(os.environ), subprocess.DEVNULL) as process:
         yield process
 
 

@@ -129,7 +129,8 @@ def _progress(text: str, total: int) -> Iterator[Callable[[], None]]:
 
 def _inspector(arguments: argparse.Namespace) -> "Inspector":
     from station.recipe import load_inspector
-    from station.settings import for_images, load
+    from station.settings import for_images
+    from station.settings_file import load
 
     settings = for_images(SHIPPED) if arguments.settings is None else load(arguments.settings)
     named = {key: value for key, value in (("path", arguments.model), ("ring_path", arguments.ring)) if value is not None}

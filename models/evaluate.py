@@ -93,7 +93,7 @@ def evaluate_lot(lot: Path, inspector: Inspector, progress: Callable[[], None] =
         judged = inspector.inspect(image)
         defects = defects_of(item)
         labels = [crop_label(defects, i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i in range(SEGMENTS)]
-        nok = [i < len(judged.scores) and inspector.is_nok(judged.scores[i]) for i in range(SEGMENTS)]
+        nok = list(inspector.refused(judged)) or [False] * SEGMENTS
         crops.add(str(item["frame"]), image, judged, labels, nok)
         parts.append(_part(item, judged, nok, inspector))
         progress()

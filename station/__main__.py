@@ -85,22 +85,20 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _engine(arguments: argparse.Namespace) -> int:
-    from station.settings import load
     from station.startup import run_engine
 
-    run_engine(load(arguments.settings))
+    run_engine(arguments.settings)
     return 0
 
 
 def _panel(arguments: argparse.Namespace) -> int:
     from station.panel.app import run_panel
-    from station.settings import load
 
-    return run_panel(load(arguments.settings))
+    return run_panel(arguments.settings)
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from station.settings import load
+    from station.settings_file import load
 
     load(arguments.settings)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))

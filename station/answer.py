@@ -3,10 +3,8 @@
 from station.domain import Origin, Purpose, Verdict
 from station.plc.handshake import ALL_SEGMENTS
 from station.plc.port import Result, Trigger
-from station.plc.registers import REASON_CODES, Flags, VerdictCode
+from station.plc.registers import ERROR_NOT_JUDGED, REASON_CODES, Flags, VerdictCode
 from station.records import Record
-
-ERROR_NOT_JUDGED = 0x1000
 
 
 def verdict_code(record: Record, trusted: bool) -> VerdictCode:

@@ -12,13 +12,13 @@ import zmq
 from pydantic import Field, TypeAdapter, ValidationError
 
 from station.errors import LineError
-from station.events import Event, PartEvent, Preview, StatusEvent
-from station.requests import TestPicture
+from station.events import Event, Preview
+from station.requests import Request
 from station.settings import ChannelSettings
 
-_EVENTS: TypeAdapter[Event] = TypeAdapter(Annotated[StatusEvent | PartEvent, Field(discriminator="type")])
+_EVENTS: TypeAdapter[Event] = TypeAdapter(Annotated[Event, Field(discriminator="type")])
 _PREVIEW = TypeAdapter(Preview)
-_REQUEST = TypeAdapter(TestPicture)
+_REQUEST: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="type")])
 MAX_REQUESTS = 100
 """Looked at in one go."""
 FRESH_S = 2.0
@@ -131,17 +131,19 @@ class Inbox:
         self._socket.setsockopt(zmq.IPV6, 1)
         _bind(self._context, self._socket, _address(settings, settings.requests_port), "requests_port")
 
-    def asked(self) -> bool:
-        """Whether a test picture was asked for just now; however often, it is one."""
-        fresh = False
+    def requests(self) -> list[Request]:
+        """What was asked for just now, of each kind the last."""
+        found: dict[str, Request] = {}
         for _ in range(MAX_REQUESTS):
             try:
                 raw = self._socket.recv(zmq.NOBLOCK)
             except zmq.Again:
                 break
             with suppress(ValidationError):
-                fresh |= abs(time.time() - _REQUEST.validate_json(raw).asked_s) <= FRESH_S
-        return fresh
+                request = _REQUEST.validate_json(raw)
+                if abs(time.time() - request.asked_s) <= FRESH_S:
+                    found[request.type] = request
+        return list(found.values())
 
     def close(self) -> None:
         """Close the socket."""
@@ -158,10 +160,10 @@ class Outbox:
             self._socket.setsockopt(option, value)
         self._socket.connect(_address(settings, settings.requests_port))
 
-    def ask(self) -> bool:
-        """Ask for a test picture; False if no engine is there."""
+    def ask(self, request: Request) -> bool:
+        """False if no engine is there."""
         try:
-            self._socket.send(_REQUEST.dump_json(TestPicture(time.time())), zmq.NOBLOCK)
+            self._socket.send(_REQUEST.dump_json(request), zmq.NOBLOCK)
         except zmq.Again:
             return False
         return True

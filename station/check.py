@@ -10,7 +10,8 @@ from station.archive.writer import Archive
 from station.errors import WeldgateError
 from station.plc.line import make_line
 from station.recipe import prepare
-from station.settings import Settings, load
+from station.settings import Settings
+from station.settings_file import load
 from station.startup import make_camera
 
 

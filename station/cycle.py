@@ -7,38 +7,34 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from functools import partial
 
+from station.alarmlog import AlarmLog
 from station.answer import answer
-from station.archive.room import Room
 from station.archive.writer import Archive, Pending
+from station.camera.port import Camera
 from station.camera.reconnecting import ReconnectingCamera
+from station.condition import Seen, alarms, health
 from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing, Verdict
 from station.errors import LineError, RecordError, WeldgateError
-from station.events import Counts, Event, PartEvent, Preview, StatusEvent
+from station.events import Counts, PartEvent, StatusEvent
+from station.listener import Listener
+from station.plc.handshake import ERROR_DEADLINE
 from station.plc.port import Command, Health, Line, Trigger
-from station.plc.registers import Offline, Status
+from station.plc.registers import STATUS_START, Offline, word
 from station.preview import make_preview
 from station.recipe import Loaded
 from station.records import Part, Record
+from station.requests import Reload, Service
+from station.service import ServiceMode, look
 from station.watch import Watch
 
 log = logging.getLogger("weldgate.cycle")
 
 IDLE_S = 0.1
 STATUS_S = 0.25
-
-
-@dataclass(frozen=True, slots=True)
-class Listener:
-    """Who hears of what happens; must not block."""
-
-    event: Callable[[Event], None]
-    preview: Callable[[Preview], None]
-    asks: Callable[[], bool] = lambda: False
-    """Whether somebody asks for a test picture."""
 
 
 class Cycle:
@@ -52,21 +48,24 @@ class Cycle:
         archive: Archive,
         loaded: Loaded,
         prepare: Callable[[int], Loaded],
+        new_camera: Callable[[], Camera | None],
         watch: Watch,
         listener: Listener,
+        alarm_log: AlarmLog,
     ) -> None:
-        """`prepare` loads a recipe. Raises WeldgateError."""
+        """`prepare` and `new_camera` (if it has changed) go by the settings as they are then. Both raise WeldgateError."""
         self._camera = camera
         self._origin = origin
         self._line = line
         self._archive = archive
         self._loaded = loaded
-        self._prepare = prepare
+        self._prepare, self._new_camera = prepare, new_camera
         self._watch = watch
-        self._listener = listener
+        self._listener, self._alarm_log = listener, alarm_log
+        self._service = ServiceMode()
+        self._settings_refused = False
         self._status_s = 0.0
         self._counts = Counts()
-        self._room = Room.ENOUGH
 
     def run(self, stop: threading.Event) -> None:
         """Serve triggers until `stop`; closes the camera at the end."""
@@ -80,78 +79,111 @@ class Cycle:
                     self._guarded(partial(self._part, request), f"part of trigger {request.trigger_id} was not answered")
                 elif isinstance(request, Command):
                     self._line.command_done(request, self._load_recipe(request))
-                elif self._listener.asks():
-                    self._guarded(self._test_picture, "the test picture was not judged")
-                else:
+                elif not self._attend():
                     self._watch.idle()
         finally:
             self._camera.close()
 
+    def _attend(self) -> bool:
+        """What people ask for. Whether there was anything to do."""
+        requests = self._listener.requests()
+        for request in requests:
+            if isinstance(request, Service):
+                self._service.heard(request)
+            elif isinstance(request, Reload):
+                self._guarded(self._reload, "the settings were not read again")
+            else:
+                self._guarded(partial(self._test_picture, request.master), "the test picture was not judged")
+        if self._service.ended():
+            self._camera.adjust(None, None)
+        wanted = self._service.looking
+        if wanted is not None:
+            event, preview = look(self._camera, self._loaded.inspector, wanted)
+            self._listener.event(event)
+            if preview is not None:
+                self._listener.preview(preview)
+        return bool(requests) or wanted is not None
+
+    def _reload(self) -> None:
+        """Use the settings as they are now; if they are no good, those before stay in use."""
+        self._line.checked_in(replace(self._health(), ready=False, offline=Offline.PREPARING))
+        loaded = self._loaded_anew(self._loaded.number)
+        self._settings_refused = loaded is None
+        if loaded is None:
+            return
+        camera = self._new_camera()
+        if camera is not None:
+            self._camera.exchange(camera)
+        self._use(loaded)
+
+    def _loaded_anew(self, number: int) -> Loaded | None:
+        try:
+            return self._prepare(number)
+        except WeldgateError as error:
+            log.error("recipe %d was not loaded: %s", number, error)
+        except Exception:  # the recipe before is still in use
+            log.exception("recipe %d was not loaded", number)
+        return None
+
     def _load_recipe(self, command: Command) -> bool:
         """Whether the recipe is in use now; if not, the one before still is."""
         number = command.arg
-        try:
-            loaded = self._prepare(number)
-        except WeldgateError as error:
-            log.error("recipe %d was not loaded: %s", number, error)
-            return False
-        except Exception:  # the recipe before is still in use
-            log.exception("recipe %d was not loaded", number)
+        loaded = self._loaded_anew(number)
+        if loaded is None:
             return False
         if not self._line.wanted(command):
             log.error("recipe %d was loaded too late, the one before stays in use", number)
             return False
+        self._use(loaded)
+        return True
+
+    def _use(self, loaded: Loaded) -> None:
         self._loaded = loaded
         self._watch.use(loaded)
         self._line.checked_in(self._health())
-        log.info("recipe %d in use, configuration %d", number, loaded.provenance.config_crc)
-        return True
+        log.info("recipe %d in use, configuration %d", loaded.number, loaded.provenance.config_crc)
 
-    def _health(self) -> Health:
-        room = self._archive.has_room()
-        offline = Offline.NONE
-        if not self._camera.there:
-            offline = Offline.CAMERA_LOST
-        elif not room:
-            offline = Offline.ARCHIVE_FULL
-        elif self._watch.self_test_failed:
-            offline = Offline.SELF_TEST_FAILED
-        failed = offline is not Offline.NONE
-        return Health(
-            ready=not failed,
-            offline=offline,
-            failure=failed,
-            config_crc=self._loaded.provenance.config_crc,
-            out_of_spec=self._watch.drifting,
-            function_check=self._watch.master_wrong,
-            maintenance=self._low_room(),
+    def _seen(self) -> Seen:
+        watch = self._watch
+        return Seen(
+            camera_there=self._camera.there,
+            can_write=self._archive.has_room(),
+            room=self._archive.room(),
+            plc_silent=word(STATUS_START, self._line.windows()[1], "OFFLINE_REASON") == Offline.PLC_SILENT,
+            self_test_failed=watch.self_test_failed,
+            master_wrong=watch.master_wrong,
+            masters_due=watch.masters_due,
+            drifting=watch.drifting,
+            settings_refused=self._settings_refused,
+            service=self._service.who,
+            bit=self._service.bit,
             recipe=self._loaded.provenance.recipe,
+            config_crc=self._loaded.provenance.config_crc,
         )
 
-    def _low_room(self) -> bool:
-        room = self._archive.room()
-        if room is not self._room:
-            words = {Room.FULL: "is full", Room.THIN: "fills: pictures of OK parts are left out", Room.LOW: "fills: make room"}
-            log.warning("the disk of the archive %s", words.get(room, "has room again"))
-            self._room = room
-        return room is not Room.ENOUGH
+    def _health(self) -> Health:
+        return health(self._seen())
 
     def _tell_status(self) -> None:
         now = time.monotonic()
         if now - self._status_s < STATUS_S:
             return
         self._status_s = now
-        published = self._line.status()
-        status = Status(published["STATUS"])
+        seen, (command, words) = self._seen(), self._line.windows()
+        lasting = alarms(seen)
+        self._alarm_log.lasting(lasting)
         self._listener.event(
             StatusEvent(
                 camera_there=self._camera.there,
                 camera_message=self._camera.message,
-                online=Status.ONLINE in status,
-                ready=Status.READY in status,
-                offline=Offline(published["OFFLINE_REASON"]),
                 origin=self._origin,
                 counts=self._counts,
+                alarms=tuple(int(code) for code in lasting),
+                recipe=seen.recipe,
+                config_crc=seen.config_crc,
+                service=seen.service,
+                command_words=command,
+                status_words=words,
             )
         )
 
@@ -179,10 +211,14 @@ class Cycle:
         self._line.checked_in(self._health())
         nok, novel = self._decided(record)
         start = time.perf_counter()
-        shown = self._line.publish(answer(trigger, record, nok, novel, self._watch.drifting, self._watch.trusted))
+        result = answer(trigger, record, nok, novel, self._watch.drifting, self._watch.trusted)
+        shown = self._line.publish(result)
         publish_ms = (time.perf_counter() - start) * 1000
         if not trigger.golden:
             self._count(record.verdict if shown else Verdict.ERROR)
+        if result.error_code or not shown:
+            code = result.error_code if shown else ERROR_DEADLINE
+            self._alarm_log.passing(code, f"part {record.inspection_id}")
         if not shown:
             log.warning(
                 "part %d, %s: came too late, the PLC was not shown its verdict %s", record.inspection_id, record.serial, record.verdict
@@ -197,20 +233,23 @@ class Cycle:
             )
         self._tell(frame, PartEvent(record, nok, novel, self._watch.drift, shown, record_ms, publish_ms))
 
-    def _test_picture(self) -> None:
+    def _test_picture(self, master: str) -> None:
         """A picture of what lies there now, judged and recorded; the PLC is told nothing, the counters stand still."""
         frame, inspection = self._grab()
         pending = self._archive.begin(frame)
         if frame is not None:
             inspection = self._judge(frame, inspection.timing)
-        record = self._record(Part("", 0, self._origin, Purpose.TEST), pending, inspection)
+        purpose = Purpose.GOLDEN if master else Purpose.TEST
+        record = self._record(Part(master, 0, self._origin, purpose), pending, inspection)
+        if master:
+            self._watch.master(record.serial, record.verdict)
         self._mark(record, False)
         self._tell(frame, PartEvent(record, *self._decided(record), self._watch.drift, False, 0.0, 0.0))
 
     def _decided(self, record: Record) -> tuple[tuple[bool, ...], bool]:
         """Which segments are refused, and whether the picture is unlike all training."""
         inspector = self._loaded.inspector
-        return tuple(inspector.is_nok(s) for s in record.inspection.scores), inspector.is_novel(record.inspection)
+        return inspector.refused(record.inspection), inspector.is_novel(record.inspection)
 
     def _tell(self, frame: Frame | None, event: PartEvent) -> None:
         self._listener.event(event)

@@ -87,6 +87,8 @@ class Ring:
     radius_px: float
     support: float
     """Share of the circumference where weld or joint was seen, 0 to 1."""
+    residual_px: float = 0.0
+    """Root mean square distance of what was seen there from the circle."""
 
 
 @dataclass(frozen=True, slots=True)

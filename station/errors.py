@@ -10,6 +10,7 @@ WeldgateError
 │   └── FrameDamaged   a frame came incomplete or in the wrong size
 ├── LocateError        no weld ring, or not wholly in view
 ├── RecordError        a record cannot be written or read
+├── LoginError         a person may not do that
 └── LineError          the PLC connection cannot be made
 """
 
@@ -60,6 +61,14 @@ class LocateError(WeldgateError):
 
 class RecordError(WeldgateError):
     """A record cannot be written or read."""
+
+
+class LoginError(WeldgateError):
+    """A person may not do that; `locked_s`: seconds until another PIN may be tried."""
+
+    def __init__(self, message: str, locked_s: float = 0.0) -> None:
+        super().__init__(message)
+        self.locked_s = locked_s
 
 
 class LineError(WeldgateError):

@@ -6,8 +6,8 @@ from typing import ClassVar, Literal
 from pydantic import ConfigDict
 
 from station.classify.drift import Drift
-from station.domain import Origin
-from station.plc.registers import Offline
+from station.domain import Origin, Ring
+from station.plc.registers import STATUS_START, Offline, Status, word
 from station.records import Record
 
 
@@ -32,12 +32,28 @@ class StatusEvent:
     camera_there: bool
     camera_message: str
     """Why the camera is not there, or empty."""
-    online: bool
-    ready: bool
-    offline: Offline
     origin: Origin
     counts: Counts
+    command_words: tuple[int, ...]
+    status_words: tuple[int, ...]
+    """Both windows of the register map, as the PLC has them."""
+    alarms: tuple[int, ...] = ()
+    """Codes of what lasts now."""
+    recipe: int = 1
+    config_crc: int = 0
+    service: str = ""
+    """Who works on the station, or empty."""
     type: Literal["status"] = "status"
+
+    @property
+    def status(self) -> Status:
+        """Bits that the PLC reads."""
+        return Status(word(STATUS_START, self.status_words, "STATUS"))
+
+    @property
+    def offline(self) -> Offline:
+        """Why READY is 0."""
+        return Offline(word(STATUS_START, self.status_words, "OFFLINE_REASON"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,4 +88,22 @@ class Preview:
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(ser_json_bytes="base64", val_json_bytes="base64")
 
 
-Event = StatusEvent | PartEvent
+@dataclass(frozen=True, slots=True)
+class LookEvent:
+    """One setting-up picture in numbers; not judged, not recorded."""
+
+    exposure_us: float | None
+    gain_db: float | None
+    mean_dn: float
+    """Of the whole frame, or of the strip if a ring was found."""
+    saturated_share: float
+    sharpness: float
+    histogram: tuple[int, ...]
+    """Pixels in 64 classes of grey level, of the same place."""
+    ring: Ring | None
+    problem: str = ""
+    """Why there is no picture or no ring."""
+    type: Literal["look"] = "look"
+
+
+Event = StatusEvent | PartEvent | LookEvent

@@ -4,7 +4,7 @@ from time import perf_counter
 
 import numpy as np
 
-from station.classify.decision import Thresholds, findings, mean_of, near_threshold, segment_kind
+from station.classify.decision import Thresholds, findings, mean_of, near_threshold, refused_kinds
 from station.classify.drift import read_reference
 from station.classify.onnx import LOOK, Classifier, RingNetwork
 from station.domain import Image, Inspection, Reason, Ring, SegmentScores, Timing, Verdict
@@ -37,15 +37,18 @@ class Inspector:
         self.thresholds = Thresholds(
             hole=card.hole_threshold if model.hole_threshold is None else model.hole_threshold,
             missing_weld=card.missing_threshold if model.missing_threshold is None else model.missing_threshold,
+            segments=tuple(sorted(model.segment_thresholds.items())),
+            hole_min_mm=model.hole_min_mm,
+            missing_min_mm=model.missing_min_mm,
         )
 
     def locate(self, image: Image) -> Ring:
         """Ring of the weld in `image` (H, W) uint8. Raises LocateError, ModelError."""
         return locate(image, self._expected, self._ring_network)
 
-    def is_nok(self, scores: SegmentScores) -> bool:
-        """Whether a segment with these scores is refused."""
-        return segment_kind(scores, self.thresholds) is not None
+    def refused(self, judged: Inspection) -> tuple[bool, ...]:
+        """Whether each segment is refused; empty if none was judged."""
+        return tuple(kind is not None for kind in refused_kinds(judged.scores, judged.findings, self.thresholds))
 
     def is_novel(self, judged: Inspection) -> bool:
         """Whether a part looks unlike all training images, so that its verdict deserves less trust."""
@@ -75,10 +78,11 @@ class Inspector:
         except ModelError:
             return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
         found = findings(scores, judged.maps, self.thresholds, ring, self._weld.um_per_px)
-        worst = max(found, key=lambda f: f.score, default=None)
+        kinds = [kind for kind in refused_kinds(scores, found, self.thresholds) if kind is not None]
+        kinds += [f.kind for f in sorted(found, key=lambda f: -f.score) if not self.thresholds.tolerates(f)][:1]
         return Inspection(
-            verdict=Verdict.OK if worst is None else Verdict.NOK,
-            reason=None if worst is None else worst.kind,
+            verdict=Verdict.NOK if kinds else Verdict.OK,
+            reason=kinds[-1] if kinds else None,
             ring=ring,
             quality=quality,
             scores=scores,
@@ -90,7 +94,7 @@ class Inspector:
 
     def _look_twice(self, crops: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:
         """Segments near their threshold are seen again in the mirror: a mirrored weld is a weld, with the same defects."""
-        near = [i for i, s in enumerate(scores) if near_threshold(s, self.thresholds)]
+        near = [i for i, s in enumerate(scores) if near_threshold(s, self.thresholds.of(i))]
         if not near:
             return scores
         again = crops[near]

@@ -50,6 +50,9 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
         hole_threshold=inspector.thresholds.hole,
         missing_threshold=inspector.thresholds.missing_weld,
+        segment_thresholds=inspector.thresholds.segments,
+        hole_min_mm=inspector.thresholds.hole_min_mm,
+        missing_min_mm=inspector.thresholds.missing_min_mm,
         limits_hash=hashlib.sha256(settings.model_dump_json(include={"weld", "quality"}).encode()).hexdigest(),
     )
     return inspector, provenance

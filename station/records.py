@@ -9,6 +9,7 @@ from datetime import datetime
 
 from pydantic import TypeAdapter
 
+from station.classify.decision import Thresholds
 from station.domain import Inspection, Origin, Purpose, Verdict
 
 FORMAT = 2
@@ -28,6 +29,16 @@ class Provenance:
     recipe: int = 1
     limits_hash: str = ""
     """SHA-256 of the settings of weld and quality gate: what else a verdict depends on."""
+    segment_thresholds: tuple[tuple[int, float], ...] = ()
+    """Of segments with a limit of their own."""
+    hole_min_mm: float = 0.0
+    missing_min_mm: float = 0.0
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """All limits of the decision."""
+        segments, hole_mm, missing_mm = self.segment_thresholds, self.hole_min_mm, self.missing_min_mm
+        return Thresholds(self.hole_threshold, self.missing_threshold, segments, hole_mm, missing_mm)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,11 @@ import argparse
 import sys
 from collections.abc import Callable
 from datetime import UTC, datetime
+from itertools import chain
 from pathlib import Path
 
+from station.archive.export import FORMATS
+from station.archive.journal import verify_journal
 from station.archive.reader import Row, Wanted, find, read_records, verify
 from station.errors import RecordError
 
@@ -27,7 +30,7 @@ def add_commands(records: argparse.ArgumentParser) -> None:
     prune.add_argument("--dry-run", action="store_true", help="say what would go, change nothing")
     export = add("export", _export, "write records in another form")
     export.add_argument("target", type=Path, metavar="TARGET", help="file, or folder for dataset")
-    export.add_argument("--format", choices=("csv", "json", "parquet", "dataset", "dfq"), default="csv", help="default: %(default)s")
+    export.add_argument("--format", choices=FORMATS, default="csv", help="default: %(default)s")
     _search_options(export)
     report = add("report", _report, "write a report: yield, findings by angle, trends, NOK parts, who judged")
     report.add_argument("target", type=Path, metavar="FILE", help=".html, with everything in it, or .pdf")
@@ -89,7 +92,7 @@ def _line(row: Row) -> str:
 
 def _verify(arguments: argparse.Namespace) -> int:
     bad = 0
-    for name, problem in verify(arguments.folder):
+    for name, problem in chain(verify(arguments.folder), verify_journal(arguments.folder)):
         bad += 1
         print(f"weldgate: {arguments.folder}: {name}: {problem}", file=sys.stderr)
     print(f"{len(find(arguments.folder))} records, {bad} problems")
@@ -98,7 +101,7 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 def _prune(arguments: argparse.Namespace) -> int:
     from station.archive.prune import prune
-    from station.settings import load
+    from station.settings_file import load
 
     keep = load(arguments.settings).archive.keep
     done = prune(arguments.folder, keep, datetime.now(UTC), arguments.dry_run)

@@ -1,4 +1,4 @@
-"""What a panel may ask of the engine: frozen messages, defined once."""
+"""What a panel may ask of the engine: frozen messages, defined once. An old one is not carried out: its sender saw that nothing came."""
 
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -10,5 +10,36 @@ class TestPicture:
 
     asked_s: float
     """Epoch seconds."""
+    master: str = ""
+    """Serial of the master that lies there, if it is one."""
     type: Literal["test picture"] = "test picture"
     __test__: ClassVar[bool] = False
+
+
+@dataclass(frozen=True, slots=True)
+class Service:
+    """Someone works on the station: READY 0, MODE 3, until this is not said again in time."""
+
+    asked_s: float
+    who: str
+    bit: int = 0
+    """The one bit of STATUS to set by hand."""
+    look: bool = False
+    """Take setting-up pictures, one after the other, judged and recorded by nobody."""
+    exposure_us: float | None = None
+    gain_db: float | None = None
+    """For the pictures; None: as the settings say."""
+    over: bool = False
+    """The work is done."""
+    type: Literal["service"] = "service"
+
+
+@dataclass(frozen=True, slots=True)
+class Reload:
+    """The settings were changed at the station: read them again."""
+
+    asked_s: float
+    type: Literal["reload"] = "reload"
+
+
+Request = TestPicture | Service | Reload

@@ -1,11 +1,10 @@
-"""station.toml as checked values. Relative paths count from the file's folder."""
+"""station.toml as checked values."""
 
-import tomllib
 from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from station.domain import Origin
 from station.errors import SettingsError
@@ -87,6 +86,11 @@ class ModelSettings(Section):
     """Idle time between two self-tests."""
     hole_threshold: Share | None = None
     missing_threshold: Share | None = None
+    segment_thresholds: dict[Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]] = {}
+    """Of segments with a limit of their own, for either defect."""
+    hole_min_mm: float = Field(default=0.0, ge=0, le=5)
+    """Measured findings shorter than this are told, and tolerated."""
+    missing_min_mm: float = Field(default=0.0, ge=0, le=5)
 
     @model_validator(mode="after")
     def _self_test_is_whole(self) -> "ModelSettings":
@@ -109,6 +113,8 @@ class GoldenSettings(Section):
 
     masters: dict[str, Literal["OK", "NOK"]] = {}
     """Serial of each master and what the station must find."""
+    due_h: float | None = Field(default=None, gt=0, le=8760)
+    """A master not judged for so long is due: FUNCTION_CHECK, which the PLC's block takes for no release; None: never."""
 
 
 class RecipeSettings(Section):
@@ -205,6 +211,14 @@ class ChannelSettings(Section):
     requests_port: Port = 15553
 
 
+class PanelSettings(Section):
+    """The operator's window, as it opens."""
+
+    language: Literal["en", "de"] = "en"
+    theme: Literal["dark", "light"] = "dark"
+    logout_min: float = Field(default=10.0, ge=0.1, le=480)
+
+
 class Settings(Section):
     """The whole of station.toml."""
 
@@ -216,6 +230,7 @@ class Settings(Section):
     archive: ArchiveSettings = ArchiveSettings()
     channel: ChannelSettings = ChannelSettings()
     golden: GoldenSettings = GoldenSettings()
+    panel: PanelSettings = PanelSettings()
     recipes: dict[Annotated[int, Field(ge=1, le=65535)], RecipeSettings] = {}
     """By number; recipe 1 is the sections as they are, unless it is named here."""
 
@@ -237,54 +252,3 @@ def for_recipe(settings: Settings, number: int) -> Settings:
     for name, section in (("weld", settings.weld), ("quality", settings.quality), ("model", settings.model)):
         sections[name] = type(section).model_validate({**section.model_dump(), **getattr(changes, name)})
     return settings.model_copy(update=sections)
-
-
-def load(path: Path) -> Settings:
-    """Settings from a TOML file.
-
-    Raises SettingsError naming the file, the key and what is allowed.
-    """
-    try:
-        with path.open("rb") as file:
-            raw = tomllib.load(file)
-    except FileNotFoundError:
-        raise SettingsError(f"{path}: no such settings file; name one with -c, or copy deploy/station.toml") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: cannot be read: {error}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise SettingsError(f"{path}: not valid TOML: {error}") from None
-    try:
-        settings = Settings.model_validate(raw)
-        for number in settings.recipes:
-            for_recipe(settings, number)
-    except ValidationError as error:
-        raise SettingsError(f"{path}: {_first(error)}") from None
-    return _anchored(settings, path.resolve().parent)
-
-
-def _first(error: ValidationError) -> str:
-    problems = [f"{'.'.join(str(p) for p in e['loc'] if p not in ('pylon', 'replay'))}: {e['msg']}" for e in error.errors()]
-    return "; ".join(problems)
-
-
-def _under(folder: Path, values: dict[str, Any]) -> dict[str, Path]:
-    return {key: folder / value for key, value in values.items() if key.endswith("_path") or key == "path" if value is not None}
-
-
-def _anchored(settings: Settings, folder: Path) -> Settings:
-    model = settings.model
-    changes: dict[str, Any] = {
-        "model": model.model_copy(update=_under(folder, dict(model))),
-        "recipes": {
-            number: recipe.model_copy(update={"model": {**recipe.model, **_under(folder, recipe.model)}})
-            for number, recipe in settings.recipes.items()
-        },
-        "archive": settings.archive.model_copy(update={"folder": folder / settings.archive.folder}),
-    }
-    tls = settings.plc.tls
-    if tls is not None:
-        anchored = tls.model_copy(update={key: folder / path for key, path in tls})
-        changes["plc"] = settings.plc.model_copy(update={"tls": anchored})
-    if isinstance(settings.camera, ReplaySettings):
-        changes["camera"] = settings.camera.model_copy(update={"folder": folder / settings.camera.folder})
-    return settings.model_copy(update=changes)

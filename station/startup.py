@@ -5,25 +5,29 @@ import signal
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack, closing
+from datetime import datetime
 from pathlib import Path
 from types import FrameType
 from typing import TypeVar
 
+from station.alarmlog import AlarmLog
 from station.archive.prune import Housekeeping
 from station.archive.reader import Wanted, find
 from station.archive.writer import Archive
 from station.camera.port import Camera
 from station.camera.reconnecting import ReconnectingCamera
 from station.channel import Inbox, Publisher
-from station.cycle import Cycle, Listener
+from station.cycle import Cycle
 from station.domain import Purpose, Verdict
 from station.errors import WeldgateError
+from station.listener import Listener
 from station.plc.buslog import BusLog
 from station.plc.line import make_line
 from station.plc.port import Line
 from station.recipe import Loaded, prepare
 from station.settings import PylonSettings, Settings
-from station.watch import Watch
+from station.settings_file import load
+from station.watch import Master, Watch
 
 log = logging.getLogger("weldgate")
 
@@ -41,33 +45,58 @@ def make_camera(settings: Settings) -> Camera:
     return ReplayCamera(settings.camera)
 
 
-def make_cycle(settings: Settings, loaded: Loaded, line: Line, archive: Archive, listener: Listener) -> Cycle:
-    """The cycle that the settings describe; recipes are loaded by the same settings."""
-    masters = {serial: Verdict(found) for serial, found in settings.golden.masters.items()}
+def make_cycle(
+    settings: Settings,
+    loaded: Loaded,
+    line: Line,
+    archive: Archive,
+    listener: Listener,
+    alarm_log: AlarmLog,
+    again: Callable[[], Settings] | None = None,
+) -> Cycle:
+    """The cycle that the settings describe; `again` reads them again before a recipe is loaded."""
+    golden, used = settings.golden, [settings]
+
+    def new_settings() -> Settings:
+        return used[-1] if again is None else again()
+
+    def new_camera() -> Camera | None:
+        changed = new_settings()
+        if changed.camera == used[-1].camera:
+            return None
+        used.append(changed)
+        return make_camera(changed)
+
     return Cycle(
         camera=ReconnectingCamera(make_camera(settings), settings.camera.reconnect_s),
         origin=settings.camera.origin,
         line=line,
         archive=archive,
         loaded=loaded,
-        prepare=lambda number: prepare(settings, number),
-        watch=Watch(loaded, masters, _wrong_masters(settings.archive.folder, masters), settings.model.self_test_s),
+        prepare=lambda number: prepare(new_settings(), number),
+        new_camera=new_camera,
+        watch=Watch(
+            loaded,
+            {serial: _master(settings.archive.folder, serial, Verdict(found)) for serial, found in golden.masters.items()},
+            None if golden.due_h is None else golden.due_h * 3600,
+            settings.model.self_test_s,
+        ),
         listener=listener,
+        alarm_log=alarm_log,
     )
 
 
-def _wrong_masters(folder: Path, masters: dict[str, Verdict]) -> list[str]:
-    """Masters whose last golden check, before this start, found something else."""
-    wrong = []
-    for serial, true in masters.items():
-        checks = [row for row in find(folder, Wanted(serial=serial)) if row.purpose == Purpose.GOLDEN]
-        if checks and checks[-1].verdict != true:
-            wrong.append(serial)
-    return wrong
+def _master(folder: Path, serial: str, expected: Verdict) -> Master:
+    """With its last check before this start."""
+    checks = find(folder, Wanted(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=1))
+    if not checks:
+        return Master(expected)
+    return Master(expected, Verdict(checks[0].verdict), datetime.fromisoformat(checks[0].grabbed_at).timestamp())
 
 
-def run_engine(settings: Settings) -> None:
-    """Run until SIGINT or SIGTERM. Raises WeldgateError naming all that failed at start."""
+def run_engine(path: Path) -> None:
+    """Run by a settings file until SIGINT or SIGTERM. Raises WeldgateError naming all that failed at start."""
+    settings = load(path)
     stop = threading.Event()
 
     def on_signal(_number: int, _frame: FrameType | None) -> None:
@@ -99,5 +128,7 @@ def run_engine(settings: Settings) -> None:
         stack.callback(line.stop)
         line.start()
         log.info("station up: model %s, PLC %s on port %d", loaded.provenance.model_version, settings.plc.mode, line.port)
-        cycle = make_cycle(settings, loaded, line, archive, Listener(publisher.send, publisher.show, inbox.asked))
+        alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder)))
+        listener = Listener(publisher.send, publisher.show, inbox.requests)
+        cycle = make_cycle(settings, loaded, line, archive, listener, alarm_log, lambda: load(path))
         cycle.run(stop)

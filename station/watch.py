@@ -2,7 +2,8 @@
 
 import logging
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,14 +17,23 @@ AGAIN_S = 1.0
 """Between two self-tests while they fail."""
 
 
+@dataclass(frozen=True, slots=True)
+class Master:
+    """A part known to be good or bad."""
+
+    expected: Verdict
+    found: Verdict | None = None
+    """At its last check; None: never checked."""
+    checked_s: float = 0.0
+    """Epoch seconds of the last check."""
+
+
 class Watch:
     """Hears of every part; tells what the PLC must know beside the verdicts."""
 
-    def __init__(self, loaded: Loaded, masters: Mapping[str, Verdict], wrong: Iterable[str], self_test_s: float) -> None:
-        """`masters`: serial and true verdict of each golden part; `wrong`: those judged wrongly at last, before the station was started;
-        `self_test_s`: idle time between two self-tests."""
-        self._masters, self._self_test_s = masters, self_test_s
-        self._wrong = set(wrong)
+    def __init__(self, loaded: Loaded, masters: Mapping[str, Master], due_s: float | None, self_test_s: float) -> None:
+        """`masters` by serial; `due_s`: a master not judged for so long is due; `self_test_s`: idle time between two self-tests."""
+        self._masters, self._due_s, self._self_test_s = dict(masters), due_s, self_test_s
         self.use(loaded)
 
     def use(self, loaded: Loaded) -> None:
@@ -44,12 +54,17 @@ class Watch:
     @property
     def trusted(self) -> bool:
         """Whether an OK may be said: no master was judged wrongly, the self-test passes."""
-        return not self._wrong and not self.self_test_failed
+        return not self.master_wrong and not self.self_test_failed
 
     @property
     def master_wrong(self) -> bool:
         """Whether a master was judged wrongly and not yet right again."""
-        return bool(self._wrong)
+        return any(m.found not in (None, m.expected) for m in self._masters.values())
+
+    @property
+    def masters_due(self) -> bool:
+        """Whether a master was not judged for too long."""
+        return self._due_s is not None and any(time.time() - m.checked_s > self._due_s for m in self._masters.values())
 
     def part(self, inspection: Inspection) -> None:
         """A part was judged."""
@@ -64,15 +79,15 @@ class Watch:
 
     def master(self, serial: str, found: Verdict) -> None:
         """A master was judged."""
-        expected = self._masters.get(serial)
-        if expected is None:
+        master = self._masters.get(serial)
+        if master is None:
             log.warning("golden check: serial %r is no master; name it under golden.masters", serial)
-        elif found is expected:
-            self._wrong.discard(serial)
+            return
+        self._masters[serial] = Master(master.expected, found, time.time())
+        if found is master.expected:
             log.info("golden check: master %s judged %s, right", serial, found)
         else:
-            self._wrong.add(serial)
-            log.error("golden check: master %s judged %s, must be %s; no verdict counts until it is right", serial, found, expected)
+            log.error("golden check: master %s judged %s, must be %s; no verdict counts until it is right", serial, found, master.expected)
 
     def idle(self) -> None:
         """No part is there: judge the stored frame if it is time."""

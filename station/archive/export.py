@@ -10,12 +10,13 @@ from typing import Any
 
 from station.archive.decided import segment_kinds
 from station.archive.reader import Listed
+from station.archive.review import Opinion, reviews
 from station.domain import SEGMENTS, Inspection, Reason
 from station.errors import ImageError, LocateError, RecordError
 from station.imagefile import encode_png, read_image
 from station.vision.unwrap import segments, unwrap
 
-FORMATS = ("csv", "json", "parquet", "dataset", "dfq")
+FORMATS = ("csv", "json", "parquet", "dataset", "reviewed", "dfq")
 CLASS_FOLDERS = {None: "ok", Reason.HOLE: "hole", Reason.MISSING_WELD: "missing_weld"}
 SEPARATOR, ADDITIONAL = "\x0f", "\x14"
 """Q-DAS ASCII transfer format: between characteristics, and between a value and what belongs to it."""
@@ -27,12 +28,14 @@ def export(entries: Iterable[Listed], folder: Path, target: Path, form: str) -> 
         raise RecordError(f"{target}: exists already; name another file or folder")
     good, bad = [], []
     for entry in entries:
-        if entry.record is None or (form == "dataset" and entry.problem is not None):
+        if entry.record is None or (form in ("dataset", "reviewed") and entry.problem is not None):
             bad.append((entry.path, entry.problem or "cannot be read"))
         else:
             good.append(entry)
     if form == "dataset":
         bad += list(_dataset(good, folder, target))
+    elif form == "reviewed":
+        bad += list(_reviewed(good, folder, target))
     else:
         {"csv": _csv, "json": _json, "parquet": _parquet, "dfq": _dfq}[form](target, good)
     yield from bad
@@ -96,10 +99,20 @@ def _parquet(target: Path, entries: list[Listed]) -> None:
     parquet.write_table(Table.from_pylist([flat(entry) for entry in entries]), target)
 
 
-def _dataset(entries: list[Listed], folder: Path, target: Path) -> Iterator[tuple[Path, str]]:
+def _reviewed(entries: list[Listed], folder: Path, target: Path) -> Iterator[tuple[Path, str]]:
+    """The same of parts that two people agree on: where they say it was a false call, all crops are ok."""
+    agreed = {number: review.agreed for number, review in reviews(folder).items()}
+    for all_ok, opinion in ((False, Opinion.RIGHT), (True, Opinion.FALSE_CALL)):
+        yield from _dataset([e for e in entries if agreed.get(e.row.inspection_id) is opinion], folder, target, all_ok)
+    for entry in entries:
+        if agreed.get(entry.row.inspection_id) is Opinion.MISSED:
+            yield entry.path, "a defect was missed: nobody said in which segment, its crops are left out"
+
+
+def _dataset(entries: list[Listed], folder: Path, target: Path, all_ok: bool = False) -> Iterator[tuple[Path, str]]:
     """ok, hole, missing_weld: crops by what the station found, for people to correct before anything is trained on them."""
     for name in CLASS_FOLDERS.values():
-        (target / name).mkdir(parents=True)
+        (target / name).mkdir(parents=True, exist_ok=True)
     for entry in entries:
         record = entry.record
         if record is None or record.inspection.ring is None or not record.inspection.scores or entry.row.frame_state != "kept":
@@ -109,7 +122,8 @@ def _dataset(entries: list[Listed], folder: Path, target: Path) -> Iterator[tupl
         except (ImageError, LocateError) as error:
             yield entry.path, str(error)
             continue
-        for index, (crop, kind) in enumerate(zip(segments(strip), segment_kinds(record), strict=True), start=1):
+        kinds = [None] * SEGMENTS if all_ok else segment_kinds(record)
+        for index, (crop, kind) in enumerate(zip(segments(strip), kinds, strict=True), start=1):
             (target / CLASS_FOLDERS[kind] / f"{record.inspection_id:08d}_{index:02d}.png").write_bytes(encode_png(crop))
 
 

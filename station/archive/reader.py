@@ -34,6 +34,7 @@ class Wanted:
     """1 to 21, together with `min_score`."""
     min_score: float | None = None
     """Score of NOK, at least 0.05: of the segment, or of the worst."""
+    purpose: str | None = None
     newest_first: bool = False
     limit: int | None = None
 
@@ -100,6 +101,7 @@ def _conditions(wanted: Wanted) -> tuple[list[str], list[str | float]]:
         ("r.grabbed_at < ?", None if wanted.until is None else wanted.until.isoformat()),
         ("r.verdict = ?", wanted.verdict),
         ("r.reason = ?", wanted.reason),
+        ("r.purpose = ?", wanted.purpose),
         ("s.segment = ?", wanted.segment),
         ("s.p_nok >= ?" if wanted.segment is not None else "r.worst_score >= ?", wanted.min_score),
     ]
@@ -118,7 +120,13 @@ def read_records(folder: Path, wanted: Wanted = Wanted()) -> Iterator[Listed]:
 
 
 def read_record(folder: Path, row: Row) -> tuple[Record | None, str | None]:
-    """A record and what is wrong with it, if anything."""
+    """A record and what is wrong with it or its frame, if anything."""
+    record, problem = read_words(folder, row)
+    return record, problem if record is None else _frame_problem(folder, row, record)
+
+
+def read_words(folder: Path, row: Row) -> tuple[Record | None, str | None]:
+    """A record, or why it cannot be read; its frame is not looked at."""
     try:
         text = (folder / row.record_file).read_bytes()
     except OSError as error:
@@ -126,10 +134,9 @@ def read_record(folder: Path, row: Row) -> tuple[Record | None, str | None]:
     if hashlib.sha256(text).hexdigest() != row.record_sha256:
         return None, "was changed after it was written"
     try:
-        record = from_json(text)
+        return from_json(text), None
     except ValidationError:
         return None, "is not a record of this version"
-    return record, _frame_problem(folder, row, record)
 
 
 def _frame_problem(folder: Path, row: Row, record: Record) -> str | None:

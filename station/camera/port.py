@@ -17,6 +17,12 @@ class Camera(Protocol):
         Raises FrameTimeout, FrameDamaged (the camera stays open) or CameraLost (open it again).
         """
 
+    def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
+        """For the next frames, until it is opened again; None: as the settings say. Recorded pictures stay as they are.
+
+        Raises CameraLost.
+        """
+
     def alive(self) -> bool:
         """Whether the open camera still answers; cheap, for idle times."""
 

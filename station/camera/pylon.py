@@ -57,6 +57,21 @@ class PylonCamera:
             self.close()
             raise CameraLost(f"camera {s.serial}: {_first_line(error)}") from None
 
+    def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
+        """For the next frames, within what the camera can do; None: as the settings say. Raises CameraLost."""
+        s = self._settings
+        if self._camera is None:
+            raise CameraLost(f"camera {s.serial} is not open")
+        try:
+            for node, value in (
+                (self._camera.ExposureTime, s.exposure_us if exposure_us is None else exposure_us),
+                (self._camera.Gain, s.gain_db if gain_db is None else gain_db),
+            ):
+                node.Value = min(max(value, node.Min), node.Max)
+        except genicam.GenericException as error:
+            self.close()
+            raise CameraLost(f"camera {s.serial}: {_first_line(error)}") from None
+
     def alive(self) -> bool:
         """Whether the device is there, grabbing, and answers a read of a node."""
         camera = self._camera

@@ -65,6 +65,21 @@ class ReconnectingCamera:
                 reason = Reason.INTERNAL
         return frame, reason, (time.perf_counter() - start) * 1000
 
+    def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
+        """For the next frames; None: as the settings say."""
+        if self.there:
+            try:
+                self._camera.adjust(exposure_us, gain_db)
+            except CameraLost as error:
+                self._lost(str(error))
+
+    def exchange(self, camera: Camera) -> None:
+        """Another one in its place: the settings have changed."""
+        self._camera.close()
+        self._camera = camera
+        self._tried_s = -1e9
+        self._lost("camera is opened with changed settings")
+
     def _lost(self, message: str) -> None:
         if message != self.message:
             log.warning("%s", message)

@@ -39,6 +39,9 @@ class ReplayCamera:
         except ImageError as error:
             raise FrameDamaged(str(error)) from None
 
+    def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
+        """Recorded pictures stay as they are."""
+
     def alive(self) -> bool:
         """Whether an image is left."""
         return bool(self._files)

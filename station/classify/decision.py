@@ -16,10 +16,24 @@ DEG_PER_PX = 360.0 / STRIP_COLUMNS
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
-    """A segment is NOK from these probabilities on."""
+    """A segment is NOK from these probabilities on; findings shorter than their kind's least length are told, and tolerated."""
 
     hole: float
     missing_weld: float
+    segments: tuple[tuple[int, float], ...] = ()
+    """Number, 1 to 21, and probability of either defect, of segments with a limit of their own."""
+    hole_min_mm: float = 0.0
+    missing_min_mm: float = 0.0
+
+    def of(self, index: int) -> "Thresholds":
+        """As they are for one segment, 0 to 20."""
+        own = dict(self.segments).get(index + 1)
+        return self if own is None else Thresholds(own, own)
+
+    def tolerates(self, finding: Finding) -> bool:
+        """Only what was measured can be small enough."""
+        least_mm = self.hole_min_mm if finding.kind is Reason.HOLE else self.missing_min_mm
+        return finding.area_mm2 is not None and finding.length_mm < least_mm
 
 
 def segment_kind(scores: SegmentScores, thresholds: Thresholds) -> Reason | None:
@@ -48,7 +62,7 @@ def findings(scores: Sequence[SegmentScores], maps: Map, thresholds: Thresholds,
     `maps` (21, 2, 32, 32) float32. A refused segment whose map shows nothing is a finding of its own, with the segment's angles
     and neither width nor area; such neighbours of one kind are one. So every refused segment is in a finding.
     """
-    kinds = [segment_kind(s, thresholds) for s in scores]
+    kinds = [segment_kind(s, thresholds.of(i)) for i, s in enumerate(scores)]
     if len(kinds) != SEGMENTS or maps.shape[0] != SEGMENTS:
         raise ValueError(f"{len(kinds)} segments with {maps.shape[0]} maps, needed {SEGMENTS}")
     found: list[Finding] = []
@@ -62,6 +76,19 @@ def findings(scores: Sequence[SegmentScores], maps: Map, thresholds: Thresholds,
                 unseen = [None if s in extent.segments and k is kind else k for s, k in enumerate(unseen)]
     found += _whole_segments(unseen, scores, ring, um_per_px)
     return tuple(sorted(found, key=lambda f: f.start_deg))
+
+
+def refused_kinds(scores: Sequence[SegmentScores], found: Sequence[Finding], thresholds: Thresholds) -> list[Reason | None]:
+    """Kind of each segment that is refused: over its limit, and not for tolerated findings alone. None for the others."""
+    kinds = [segment_kind(s, thresholds.of(i)) for i, s in enumerate(scores)]
+    return [kind if kind is None or not _tolerated(i, kind, found, thresholds) else None for i, kind in enumerate(kinds)]
+
+
+def _tolerated(index: int, kind: Reason, found: Sequence[Finding], thresholds: Thresholds) -> bool:
+    """Whether all of its kind that reaches into a segment is tolerated, and there is any."""
+    start, end = index * SEGMENT_DEG, (index + 1) * SEGMENT_DEG
+    here = [f for f in found if f.kind is kind and any(f.start_deg < end + turn and f.end_deg > start + turn for turn in (0.0, 360.0))]
+    return bool(here) and all(thresholds.tolerates(f) for f in here)
 
 
 def _measured(kind: Reason, extent: Extent, scores: Sequence[SegmentScores], ring: Ring, um_per_px: float) -> Finding:

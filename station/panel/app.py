@@ -3,23 +3,35 @@
 import os
 import signal
 import sys
+from pathlib import Path
 
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from station.channel import Outbox, Subscriber
 from station.errors import WeldgateError
+from station.panel import theme, words
 from station.panel.bridge import Bridge
+from station.panel.session import Session
 from station.panel.window import Window
-from station.settings import Settings
+from station.settings_file import load
 
 
-def run_panel(settings: Settings) -> int:
-    """Show the window until it is closed, or until SIGINT or SIGTERM."""
+def open_window(path: Path) -> Window:
+    """The window by a settings file, not yet shown; needs an application. Raises SettingsError."""
+    settings = load(path)
+    words.use(settings.panel.language)
+    theme.use(settings.panel.theme)
+    bridge = Bridge(Subscriber(settings.channel), Outbox(settings.channel))
+    return Window(Session(bridge, settings, path))
+
+
+def run_panel(path: Path) -> int:
+    """Show the window until it is closed, or until SIGINT or SIGTERM. Raises WeldgateError."""
     if sys.platform == "linux" and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
         raise WeldgateError("no display for the window; set DISPLAY, or run 'weldgate engine' alone")
     app = QApplication.instance() or QApplication(sys.argv[:1])
-    window = Window(Bridge(Subscriber(settings.channel), Outbox(settings.channel)))
+    window = open_window(path)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: window.close())
     wake = QTimer()  # lets Python see signals while Qt waits

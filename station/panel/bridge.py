@@ -4,6 +4,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from station.channel import Outbox, Subscriber
 from station.events import PartEvent, StatusEvent
+from station.requests import Request
 
 POLL_MS = 30
 
@@ -15,6 +16,8 @@ class Bridge(QObject):
     """StatusEvent"""
     part = Signal(object)
     """PartEvent"""
+    look = Signal(object)
+    """LookEvent"""
     preview = Signal(object)
     """Preview"""
 
@@ -31,13 +34,15 @@ class Bridge(QObject):
                 self.status.emit(event)
             elif isinstance(event, PartEvent):
                 self.part.emit(event)
+            else:
+                self.look.emit(event)
         preview = self._subscriber.preview()
         if preview is not None:
             self.preview.emit(preview)
 
-    def ask_for_test_picture(self) -> bool:
+    def ask(self, request: Request) -> bool:
         """False if no engine is there."""
-        return self._outbox.ask()
+        return self._outbox.ask(request)
 
     def close(self) -> None:
         """Stop listening."""

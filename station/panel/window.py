@@ -1,129 +1,203 @@
-"""Puts the views together; no logic of its own but the ageing of the lamp."""
+"""The shell: header, a button for each page, the page. Language and theme are changed by building the pages anew from the session."""
 
-import time
+from collections.abc import Callable
+from typing import Protocol
 
-from PySide6.QtCore import QTimer
-from PySide6.QtGui import QCloseEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMainWindow, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QObject, QTimer
+from PySide6.QtGui import QCloseEvent, QKeySequence, QShortcut
+from PySide6.QtWidgets import (
+    QApplication,
+    QButtonGroup,
+    QFrame,
+    QHBoxLayout,
+    QMainWindow,
+    QPushButton,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from station.domain import Origin
-from station.events import PartEvent, Preview, StatusEvent
-from station.panel import theme
-from station.panel.bridge import Bridge
-from station.panel.lamp_state import STATUS_LOST_S, lamp
-from station.panel.live_view import LiveView
-from station.panel.strip_view import StripView
-from station.panel.verdict_lamp import VerdictLamp
+from station.panel import theme, words
+from station.panel.alarms.page import AlarmsPage
+from station.panel.card import label, scrolled
+from station.panel.history.page import HistoryPage
+from station.panel.line.page import LinePage
+from station.panel.live.page import LivePage
+from station.panel.session import Session
+from station.panel.setup.page import SetupPage
+from station.panel.statistics.page import StatisticsPage
+from station.panel.words import data, translate
+from station.plc.alarms import TEXTS
 
-AGE_MS = 200
-FACTS = ("part", "serial", "trigger", "inspection", "cycle", "picture", "camera", "parts", "OK", "NOK", "not judged", "yield")
+AGE_MS = 500
+NAV_PX, HEADER_PX = 170, 56
+
+
+class Page(Protocol):
+    """What the shell needs of a page."""
+
+    def close_page(self) -> None:
+        """Nothing is left running."""
 
 
 class Window(QMainWindow):
     """The operator's window."""
 
-    def __init__(self, bridge: Bridge) -> None:
+    def __init__(self, session: Session) -> None:
         super().__init__()
-        self._bridge = bridge
-        self._status: StatusEvent | None = None
-        self._status_s = self._part_s = -1e9
-        self._part: PartEvent | None = None
+        self.session = session
         self.setWindowTitle("weldgate")
-        self.setStyleSheet(theme.STYLE)
-        self._live, self._strip, self._lamp = LiveView(), StripView(), VerdictLamp()
-        self._badge = QLabel("SIMULATED CAMERA")
-        self._badge.setObjectName("badge")
-        self._badge.hide()
-        self._test = QPushButton("Test picture")
-        self._test.setObjectName("action")
-        self._test.setToolTip("Take a picture of what lies there now and judge it; the PLC is told nothing")
-        self._test.clicked.connect(bridge.ask_for_test_picture)
-        self._facts = {name: QLabel("–") for name in FACTS}
-        self._lay_out()
-        bridge.status.connect(self._on_status)
-        bridge.part.connect(self._on_part)
-        bridge.preview.connect(self._on_preview)
-        self._clock = QTimer(self)
-        self._clock.timeout.connect(self._age)
-        self._clock.start(AGE_MS)
-        self._age()
+        self.setMinimumSize(1180, 720)
         self.resize(1280, 800)
+        self._pages: list[QWidget] = []
+        self._build(0)
+        session.status_changed.connect(self._on_status)
+        session.user_changed.connect(self._on_user)
+        self._ageing = QTimer(self)
+        self._ageing.timeout.connect(self._on_status)
+        self._ageing.start(AGE_MS)
+        for index in range(len(self._pages)):
+            QShortcut(QKeySequence(f"F{index + 1}"), self, lambda i=index: self.go(i))
 
-    def _lay_out(self) -> None:
-        side = QVBoxLayout()
-        side.addWidget(self._badge)
-        side.addWidget(self._lamp, 2)
-        side.addWidget(self._card(FACTS[:7]))
-        side.addWidget(self._card(FACTS[7:]))
-        side.addWidget(self._test)
-        top = QHBoxLayout()
-        top.addWidget(self._live, 5)
-        column = QWidget()
-        column.setMinimumWidth(360)
-        side.setContentsMargins(0, 0, 0, 0)
-        column.setLayout(side)
-        top.addWidget(column, 2)
-        page = QVBoxLayout()
-        page.addLayout(top, 1)
-        page.addWidget(self._strip)
+    def _build(self, chosen: int) -> None:
+        """All widgets in the language and theme in use."""
+        made: list[tuple[str, Callable[[Session], QWidget]]] = [
+            (translate("window", "Live"), LivePage),
+            (translate("window", "History"), HistoryPage),
+            (translate("window", "Statistics"), StatisticsPage),
+            (translate("window", "Line"), LinePage),
+            (translate("window", "Alarms"), AlarmsPage),
+            (translate("window", "Setup"), SetupPage),
+        ]
+        self._stack, self._buttons = QStackedWidget(), QButtonGroup(self)
+        nav = QFrame()
+        nav.setObjectName("nav")
+        nav.setFixedWidth(NAV_PX)
+        column = QVBoxLayout(nav)
+        column.setContentsMargins(0, 6, 0, 6)
+        column.setSpacing(0)
+        self._names, self._pages = [name for name, _ in made], []
+        for index, (name, page) in enumerate(made):
+            button = QPushButton(name)
+            button.setObjectName("nav")
+            button.setCheckable(True)
+            button.setToolTip(f"F{index + 1}")
+            self._buttons.addButton(button, index)
+            column.addWidget(button)
+            self._pages.append(page(self.session))
+            self._stack.addWidget(scrolled(self._pages[-1]))
+        column.addStretch(1)
+        self._buttons.idClicked.connect(self.go)
         body = QWidget()
-        body.setLayout(page)
+        rows = QVBoxLayout(body)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(self._header())
+        middle = QHBoxLayout()
+        middle.setSpacing(0)
+        middle.addWidget(nav)
+        middle.addWidget(self._stack, 1)
+        rows.addLayout(middle, 1)
         self.setCentralWidget(body)
+        self.go(chosen)
+        self._on_user()
+        self._on_status()
 
-    def _card(self, names: tuple[str, ...]) -> QFrame:
-        card = QFrame()
-        card.setObjectName("card")
-        grid = QGridLayout(card)
-        grid.setVerticalSpacing(4)
-        for row, name in enumerate(names):
-            label = QLabel(name)
-            label.setObjectName("quiet")
-            grid.addWidget(label, row, 0)
-            self._facts[name].setObjectName("value" if name in ("OK", "NOK", "parts") else "fact")
-            grid.addWidget(self._facts[name], row, 1)
-        grid.setColumnStretch(1, 1)
-        return card
+    def _header(self) -> QFrame:
+        header = QFrame()
+        header.setObjectName("header")
+        header.setFixedHeight(HEADER_PX)
+        row = QHBoxLayout(header)
+        row.setContentsMargins(14, 4, 10, 4)
+        self._badge, self._alarm, self._user = label("", "badge"), QPushButton(""), QPushButton("")
+        self._alarm.setObjectName("flat")
+        self._alarm.clicked.connect(lambda: self.go(4))
+        self._user.setObjectName("flat")
+        self._user.clicked.connect(lambda: self.go(5))
+        row.addWidget(label("weldgate", "title"))
+        row.addWidget(self._badge)
+        row.addWidget(self._alarm)
+        row.addStretch(1)
+        row.addWidget(self._user)
+        other = next(name for name in words.LANGUAGES if name != words.language())
+        self._language, self._theme = QPushButton(words.LANGUAGES[other]), QPushButton("◐")
+        self._language.clicked.connect(lambda: self.speak(other))
+        self._theme.setToolTip(translate("window", "dark or light"))
+        self._theme.clicked.connect(lambda: self.dress("light" if theme.name() == "dark" else "dark"))
+        for button in (self._language, self._theme):
+            row.addWidget(button)
+        return header
 
-    def _on_status(self, event: StatusEvent) -> None:
-        self._status, self._status_s = event, time.monotonic()
-        self._badge.setVisible(event.origin is not Origin.CAMERA)
-        self._badge.setText("SIMULATED CAMERA" if event.origin is Origin.SIMULATED else "REPLAY")
-        counts = event.counts
-        self._facts["camera"].setText("there" if event.camera_there else "lost")
-        self._facts["parts"].setText(str(counts.total))
-        self._facts["OK"].setText(str(counts.ok))
-        self._facts["NOK"].setText(str(counts.nok))
-        self._facts["not judged"].setText(str(counts.error))
-        self._facts["yield"].setText(f"{counts.ok / counts.total:.1%}" if counts.total else "–")
-        self._age()
+    @property
+    def page(self) -> QWidget:
+        """The page that is shown."""
+        return self._pages[self._stack.currentIndex()]
 
-    def _on_part(self, event: PartEvent) -> None:
-        self._part, self._part_s = event, time.monotonic()
-        record, timing = event.record, event.record.inspection.timing
-        steps = (timing.grab_ms, timing.locate_ms, timing.unwrap_ms, timing.classify_ms, event.record_ms, event.publish_ms)
-        self._facts["part"].setText(f"no. {record.inspection_id}")
-        self._facts["serial"].setText(record.serial or "–")
-        self._facts["trigger"].setText(str(record.trigger_id))
-        self._facts["inspection"].setText(f"{record.grabbed_at:%H:%M:%S} UTC")
-        drifting = event.drift is not None and event.drift.alarm
-        self._facts["picture"].setText("UNLIKE TRAINING" if event.novel else "DRIFTING" if drifting else "known")
-        self._facts["cycle"].setText(f"{sum(ms for ms in steps if ms is not None):.0f} ms")
-        self._live.show_part(event)
-        self._strip.show_part(event)
-        self._age()
+    def go(self, index: int) -> None:
+        """Show a page: 0 live, 1 history, 2 statistics, 3 line, 4 alarms, 5 setup."""
+        self._stack.setCurrentIndex(index)
+        self._buttons.button(index).setChecked(True)
 
-    def _on_preview(self, preview: Preview) -> None:
-        self._live.show_preview(preview)
-        self._strip.show_preview(preview)
+    def speak(self, language: str) -> None:
+        """Another language, at once."""
+        self._anew(lambda: words.use(language))
 
-    def _age(self) -> None:
-        now = time.monotonic()
-        there = self._status is not None and now - self._status_s <= STATUS_LOST_S and self._status.camera_there
-        self._test.setEnabled(there)
-        self._lamp.show_lamp(lamp(self._status, now - self._status_s, self._part, now - self._part_s))
+    def dress(self, name: str) -> None:
+        """Another theme, at once."""
+        self._anew(lambda: theme.use(name))
+
+    def _anew(self, change: Callable[[], None]) -> None:
+        chosen = self._stack.currentIndex()
+        self._close_pages()
+        change()
+        self._build(chosen)
+
+    def _on_status(self) -> None:
+        session, status = self.session, self.session.status
+        self._badge.setVisible(status is not None and status.origin is not Origin.CAMERA)
+        simulated = status is not None and status.origin is Origin.SIMULATED
+        self._badge.setText(translate("window", "SIMULATED CAMERA") if simulated else translate("window", "REPLAY"))
+        lasting = status.alarms if status is not None and session.engine_there else ()
+        if not session.engine_there:
+            text = translate("window", "no word from the engine; it is connected again by itself")
+        else:
+            text = data(TEXTS[lasting[0]].cause) if lasting else ""
+        more = f" (+{len(lasting) - 1})" if len(lasting) > 1 else ""
+        self._alarm.setText(f"⚠ {text}{more}" if text else "")
+        self._alarm.setVisible(bool(text))
+        alarms = f"{self._names[4]} ({len(lasting)})" if lasting else self._names[4]
+        self._buttons.button(4).setText(alarms)
+
+    def _on_user(self) -> None:
+        user = self.session.user
+        self._user.setText(translate("window", "Log in") if user is None else f"{user.name}")
+        app = QApplication.instance()
+        if app is not None:  # every event of the application passes a filter: only while it matters
+            app.removeEventFilter(self)
+            if user is not None:
+                app.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
+        """Any touch or key keeps who is logged in."""
+        if event.type() in (QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.TouchBegin):
+            self.session.touched()
+        return super().eventFilter(watched, event)
+
+    def _close_pages(self) -> None:
+        for page in self._pages:
+            page.close_page()  # type: ignore[attr-defined]
+            page.setParent(None)
+            page.deleteLater()
+        self._pages = []
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
-        """Stop the timers and the channel."""
-        self._clock.stop()
-        self._bridge.close()
+        """Stop timers, work and channel."""
+        app = QApplication.instance()
+        if app is not None:
+            app.removeEventFilter(self)
+        self._ageing.stop()
+        for page in self._pages:
+            page.close_page()  # type: ignore[attr-defined]
+        self.session.close()
         super().closeEvent(event)

@@ -17,6 +17,8 @@ log = logging.getLogger("weldgate.bus")
 
 NAME = "bus-{:%Y-%m-%d}.jsonl"
 WORDS = {"command": ("TRIGGER_ID", "COMMAND", "ARG"), "status": ("ACK_TRIGGER_ID", "RESULT_TRIGGER_ID", "VERDICT", "CMD_ECHO")}
+TAIL_BYTES = 160
+"""About the length of a line."""
 MAX_WAITING = 10_000
 """Edges that wait for a slow disk; more are left out, and the file says how many."""
 
@@ -150,6 +152,25 @@ class BusLog:
             for path in self._folder.glob("bus-????-??-??.jsonl"):
                 if path.name < oldest:
                     path.unlink()
+
+
+def tail_bus(folder: Path, place: tuple[str, int], most: int) -> tuple[list[Edge], tuple[str, int]]:
+    """Edges written since `place` (file name, byte), at most the newest, and the place after them. Raises RecordError."""
+    files = sorted(folder.glob("bus-????-??-??.jsonl"))
+    if not files:
+        return [], place
+    newest, begun = files[-1], place[1] if files[-1].name == place[0] else 0
+    try:
+        with newest.open("rb") as file:
+            size = file.seek(0, 2)
+            begin = max(begun, size - most * TAIL_BYTES)
+            file.seek(begin)
+            whole = file.read().rpartition(b"\n")[0]
+    except OSError as error:
+        raise RecordError(f"{newest}: cannot be read ({error.strerror})") from None
+    lines = whole.split(b"\n")[1 if begin > begun else 0 :]
+    found = [Edge(**json.loads(line)) for line in lines if line]
+    return found[-most:], (newest.name, begin + len(whole) + (1 if whole else 0))
 
 
 def read_bus(folder: Path) -> Iterator[Edge]:

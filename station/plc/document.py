@@ -2,6 +2,7 @@
 
 from enum import IntFlag
 
+from station.plc.alarms import TEXTS
 from station.plc.registers import MAP, REASON_CODES, REFUSED, CommandCode, Control, Flags, Offline, Status, VerdictCode
 
 COLUMNS = ("register", "4xxxx", "bits", "name", "type", "words", "meaning")
@@ -41,9 +42,9 @@ def as_markdown() -> str:
     text += f"\nCMD_ECHO is the command once CMD_DONE is 1, or {REFUSED} if it was refused.\n"
     text += "\n## OFFLINE_REASON\n\n" + _table(("value", "name"), [(str(int(v)), v.name) for v in Offline])
     text += "\n## REASON\n\n" + _table(("value", "meaning"), [(str(code), str(reason)) for reason, code in REASON_CODES.items()])
-    text += "\nERROR_CODE is 16#1000 + REASON when a part could not be judged; 16#2101 deadline missed, 16#2102 aborted,\n"
-    text += "16#2103 TRIGGER_ID 0 or repeated, 16#2104 a PLC bit is stuck, 16#2105 the link was lost while the result was written.\n"
-    return text
+    text += "\n## ERROR_CODE\n\nThe same code stands in the window of the station. From 16#3000 on: states that last, told while\n"
+    text += "nothing else is.\n\n"
+    return text + _table(("value", "cause", "what to do"), [(f"16#{code:04X}", e.cause, e.action) for code, e in sorted(TEXTS.items())])
 
 
 def _bits(flags: type[IntFlag]) -> list[tuple[str, ...]]:

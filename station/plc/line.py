@@ -72,8 +72,8 @@ class ModbusLine:
         self._state = State()
         self._health, self._health_s = Health(False, Offline.STARTING, False, 0), -1e9
         self._counts = {VerdictCode.OK: 0, VerdictCode.NOK: 0, VerdictCode.ERROR: 0}
-        self._published: dict[str, int] = {"STATUS": 0, "OFFLINE_REASON": int(Offline.STARTING), "HEARTBEAT": 0}
-        self._command = unpack_window(COMMAND_START, [0xFF] + [0] * (COMMAND_WORDS - 1))
+        self._command_words = [0xFF] + [0] * (COMMAND_WORDS - 1)
+        self._command = unpack_window(COMMAND_START, self._command_words)
         self._exposed: int | None = None
         self._offered: Offer | None = None
         self._done: tuple[int, bool] | None = None
@@ -82,7 +82,8 @@ class ModbusLine:
         self._lost_s: float | None = None
         self._lost_said = ""
         self._values_before = self._values(0.0)
-        """Status window as published last."""
+        self._status_words = pack_window(STATUS_START, STATUS_WORDS, self._values_before)
+        """As published last."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._wake: asyncio.Event | None = None
@@ -156,9 +157,9 @@ class ModbusLine:
             raise LineError("the Modbus line is not running")
         self._health, self._health_s = health, time.monotonic()
 
-    def status(self) -> dict[str, int]:
-        """STATUS, OFFLINE_REASON and HEARTBEAT as last published."""
-        return dict(self._published)
+    def windows(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Words of the command window as last read and of the status window as last published."""
+        return tuple(self._command_words), tuple(self._status_words)
 
     def _poke(self) -> None:
         if self._loop is None or self._loop.is_closed():
@@ -192,7 +193,8 @@ class ModbusLine:
         """Read the command window, step, publish the whole record, then act. Whether to step again at once."""
         now_s, link = time.monotonic(), True
         try:
-            self._command = unpack_window(COMMAND_START, await self._wire.read_command())
+            self._command_words = await self._wire.read_command()
+            self._command = unpack_window(COMMAND_START, self._command_words)
         except LineError as error:
             link = False
             self._link_lost(error, now_s)
@@ -204,16 +206,16 @@ class ModbusLine:
         self._state = outcome.state
         self._plan(outcome, offered)
         values = self._values(now_s)
+        words = pack_window(STATUS_START, STATUS_WORDS, values)
         if link:
             try:
-                await self._wire.publish(pack_window(STATUS_START, STATUS_WORDS, values))
+                await self._wire.publish(words)
             except LineError as error:
                 self._link_lost(error, now_s)
                 self._bus(time.time(), self._command, self._values_before)
                 return False
             self._lost_s = None
-        self._values_before = values
-        self._published = {name: number(values, name) for name in self._published}
+        self._values_before, self._status_words = values, words
         self._bus(time.time(), self._command, values)
         after, self._after = self._after, []
         for act in after:

@@ -64,6 +64,10 @@ class Health:
     """NE 107: maintenance required; the disk fills."""
     recipe: int = 1
     """Number of the recipe in use."""
+    alarm: int = 0
+    """Code of the gravest alarm."""
+    bit: int = 0
+    """Bit of STATUS that is set by hand; only while someone works on the station."""
 
 
 class Line(Protocol):
@@ -96,5 +100,5 @@ class Line(Protocol):
     def checked_in(self, health: Health) -> None:
         """The inspection is alive; call at least every 500 ms while idle."""
 
-    def status(self) -> dict[str, int]:
-        """STATUS, OFFLINE_REASON and HEARTBEAT as last published."""
+    def windows(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Words of the command window as last read and of the status window as last published."""

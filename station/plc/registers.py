@@ -4,6 +4,7 @@ Addresses are 0-based PDU addresses; 32-bit values have the high word first; bit
 """
 
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum, IntFlag
 from typing import Literal
@@ -84,6 +85,7 @@ class Offline(IntEnum):
     STATION_STALLED = 7
     PREPARING = 8
     SELF_TEST_FAILED = 9
+    SERVICE = 10
 
 
 class CommandCode(IntEnum):
@@ -99,6 +101,8 @@ class CommandCode(IntEnum):
 
 REFUSED = 0xFFFF
 """CMD_ECHO of a command that was not done."""
+ERROR_NOT_JUDGED = 0x1000
+"""ERROR_CODE is this and REASON when a part could not be judged."""
 REASON_CODES = {reason: code for code, reason in enumerate(Reason, start=1)}
 """Values of REASON; 0: none."""
 
@@ -154,7 +158,7 @@ MAP: tuple[Register, ...] = (
     Register(121, "RESULT_AGE_10MS", "u16", "age of the result, 10 ms"),
     Register(122, "SERIAL_ECHO", "ascii", "part serial as judged", 32),
     Register(138, "SEG_SCORE", "u16", "score of each segment x 10000", SEGMENTS),
-    Register(159, "MODE", "u16", "1 PRD, 2 SBY, 3 ENG, 4 SDT, 5 UDT, 6 NST"),
+    Register(159, "MODE", "u16", "1 PRD: parts are judged; 2 SBY: READY is 0; 3 ENG: someone works on the station, see SERVICE"),
     Register(160, "OFFLINE_REASON", "u16", "why READY is 0"),
     Register(161, "CMD_ECHO", "u16", "last command done; 65535: refused"),
     Register(162, "COUNT_OK", "u32", "parts OK since start"),
@@ -225,6 +229,11 @@ def unpack_window(start: int, words: list[int]) -> dict[str, Value]:
         for r in MAP
         if start <= r.address and r.address + r.words <= end
     }
+
+
+def word(start: int, words: Sequence[int], name: str) -> int:
+    """One 16-bit register out of a window."""
+    return words[BY_NAME[name].address - start]
 
 
 def reordered(start: int, words: list[int]) -> list[int]:

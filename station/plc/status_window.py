@@ -3,7 +3,7 @@
 from station.domain import SEGMENTS
 from station.plc.handshake import ALL_SEGMENTS, Phase, State, ready
 from station.plc.port import Health
-from station.plc.registers import MAP_VERSION, TEST_F32, TEST_U32, Status, Value, VerdictCode
+from station.plc.registers import MAP_VERSION, TEST_F32, TEST_U32, Offline, Status, Value, VerdictCode
 
 
 def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int]) -> dict[str, Value]:
@@ -30,6 +30,9 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
     ):
         if on:
             status |= bit
+    in_service = s.offline is Offline.SERVICE and s.phase is Phase.OFFLINE
+    if in_service and health.bit:
+        status = Status(health.bit)  # alone: an OK without RESULT_VALID releases nothing
     window: dict[str, Value] = {
         "STATUS": int(status),
         "HEARTBEAT": s.heartbeat,
@@ -38,12 +41,12 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         "ACK_TRIGGER_ID": s.last_id,
         "VERDICT": int(verdict),
         "VERDICT_INV": 0xFFFF ^ int(verdict),
-        "ERROR_CODE": s.error_code,
+        "ERROR_CODE": s.error_code or health.alarm,
         "ACTIVE_RECIPE": health.recipe,
         "CONFIG_CRC": health.config_crc,
         "SEG_COUNT": SEGMENTS,
         "SEG_INVALID_MASK": ALL_SEGMENTS,
-        "MODE": 1 if s.phase is not Phase.OFFLINE else 2,
+        "MODE": 3 if in_service else 1 if s.phase is not Phase.OFFLINE else 2,
         "OFFLINE_REASON": int(s.offline),
         "CMD_ECHO": s.cmd_echo,
         "COUNT_OK": counts[0],

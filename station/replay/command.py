@@ -16,7 +16,8 @@ from station.replay.report import write_page
 from station.replay.results import write_csv, write_json
 from station.replay.run import replay
 from station.report.truth import read_truth
-from station.settings import Settings, for_images, for_recipe, load
+from station.settings import Settings, for_images, for_recipe
+from station.settings_file import load
 
 
 def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:

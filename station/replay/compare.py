@@ -81,7 +81,7 @@ def _record(source: Source) -> tuple[Record | None, str | None]:
 
 
 def _who(p: Provenance) -> tuple[object, ...]:
-    return p.model_hash, p.ring_model_hash, p.hole_threshold, p.missing_threshold, p.limits_hash
+    return p.model_hash, p.ring_model_hash, p.thresholds, p.limits_hash
 
 
 def _score(value: float | None) -> str:

@@ -59,13 +59,15 @@ def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring
     for _ in range(2):
         offset, presence = find_sectors(polar_band(image, x, y, radius))
         fit = _robust_fit(offset, presence)
-        support = float(np.mean((presence >= MIN_PRESENCE) & (np.abs(offset - _BASIS @ fit) <= NEAR_PX)))
+        residual = offset - _BASIS @ fit
+        on_circle = (presence >= MIN_PRESENCE) & (np.abs(residual) <= NEAR_PX)
+        support = float(np.mean(on_circle))
         x, y, radius = x + fit[0], y + fit[1], radius + fit[2]
     if support < MIN_SUPPORT:
         raise LocateError(f"no weld found: only {support:.0%} of the best circle shows weld or joint, needed {MIN_SUPPORT:.0%}")
     if abs(radius - expected.radius_px) > expected.tolerance_px:
         raise LocateError(f"no weld found: the best circle has {radius:.0f} px radius, needed {expected.radius_px:.0f} px")
-    ring = Ring(float(x), float(y), float(radius), support)
+    ring = Ring(float(x), float(y), float(radius), support, float(np.sqrt(np.mean(residual[on_circle] ** 2))))
     if not in_view(ring, width, height):
         raise LocateError(f"the weld at ({x:.0f}, {y:.0f}) px is not wholly in view", out_of_view=True)
     return ring

@@ -1,29 +1,50 @@
 """The window over a real channel, offscreen."""
 
+import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from deploy.demo import free_ports
-from station.channel import Inbox, Outbox, Publisher, Subscriber
-from station.domain import Image, Origin, Ring
+from deploy.demo import free_ports, station_toml
+from station.archive.schema import open_index
+from station.channel import Inbox, Publisher, Subscriber
+from station.domain import Image, Ring
 from station.errors import LineError
-from station.events import Counts, PartEvent, StatusEvent
-from station.panel.bridge import Bridge
-from station.panel.window import Window
+from station.events import Counts
+from station.panel import theme, words
+from station.panel.app import open_window
+from station.panel.live.page import LivePage
+from station.panel.setup.page import SetupPage
+from station.panel.window import HEADER_PX, NAV_PX, Window
+from station.plc.alarms import Alarm
 from station.plc.registers import Offline
 from station.preview import make_preview
+from station.requests import TestPicture
 from station.settings import ChannelSettings
-from tests.parts import label_with, nok_inspection, record
+from station.settings_file import load
+from tests.panel.made import part, status
+from tests.parts import label_with, nok_inspection, ok_inspection
+
+TABS_PX = 80
+"""Of the page Setup, with its margins."""
 
 
 @pytest.fixture
-def settings() -> ChannelSettings:
-    events_port, preview_port, requests_port = free_ports(3)
-    return ChannelSettings(events_port=events_port, preview_port=preview_port, requests_port=requests_port)
+def path(tmp_path: Path) -> Path:
+    made = tmp_path / "station.toml"
+    made.write_text(station_toml(tmp_path / "records", *free_ports(4)))
+    (tmp_path / "records").mkdir()
+    open_index(tmp_path / "records").close()
+    return made
+
+
+@pytest.fixture
+def settings(path: Path) -> ChannelSettings:
+    return load(path).channel
 
 
 @pytest.fixture
@@ -34,68 +55,93 @@ def publisher(settings: ChannelSettings) -> Iterator[Publisher]:
 
 
 @pytest.fixture
-def window(settings: ChannelSettings, qtbot: QtBot) -> Iterator[Window]:
-    shown = Window(Bridge(Subscriber(settings), Outbox(settings)))
+def window(path: Path, qtbot: QtBot) -> Iterator[Window]:
+    shown = open_window(path)
     qtbot.addWidget(shown)
     shown.show()
     yield shown
     shown.close()
+    words.use("en")
+    theme.use("dark")
 
 
-def status(origin: Origin = Origin.SIMULATED) -> StatusEvent:
-    return StatusEvent(True, "", True, True, Offline.NONE, origin, Counts(3, 1, 0))
+def live(window: Window) -> LivePage:
+    page = window._pages[0]
+    assert isinstance(page, LivePage)
+    return page
 
 
 def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: QtBot, frames: dict[str, Image]) -> None:
     item = label_with("hole")
-    judged = nok_inspection()
     ring = Ring(item["center"][0], item["center"][1], item["radius"], 1.0)
-    event = PartEvent(record(judged, 12), tuple(i == 3 for i in range(21)), True, None, True, 90.0, 1.0)
-    preview = make_preview(12, frames[item["frame"]], ring)
+    event, preview = part(nok_inspection(), 12), make_preview(12, frames[item["frame"]], ring)
+    publisher_said = [False]
 
     def told() -> None:
-        publisher.send(status())
-        publisher.send(event)
+        publisher.send(status(alarms=(int(Alarm.PICTURES_DRIFT),)))
+        if not publisher_said[0]:
+            publisher.send(event)
         publisher.show(preview)
-        assert window._facts["part"].text() == "no. 12"
-        assert window._facts["parts"].text() == "4"
-        assert window._facts["picture"].text() == "UNLIKE TRAINING"
-        assert window._lamp._lamp.word == "NOK"
-        assert window._live._preview is not None
+        page = live(window)
+        publisher_said[0] = page.facts.values["part"].text() == "12"
+        assert publisher_said[0]
+        assert page.facts.values["parts"].text() == "4"
+        assert page.lamp.lamp.word == "NOK"
+        assert page.weld.drawn is not None
+        assert window.session.last_nok is not None
 
     qtbot.waitUntil(told, timeout=5000)
     assert window._badge.text() == "SIMULATED CAMERA"
+    assert window._buttons.button(4).text() == "Alarms (1)"
+    assert live(window).clock.counts[3] >= 1
     picture = window.grab().toImage()
     colors = {picture.pixelColor(x, y).name() for x in range(0, picture.width(), 4) for y in range(0, picture.height(), 4)}
-    assert "#e0483e" in colors, "the NOK red is nowhere on the window"
+    assert theme.DARK.bad in colors, "the NOK red is nowhere on the window"
+
+
+def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(window: Window, frames: dict[str, Image], qtbot: QtBot) -> None:
+    session = window.session
+    item = label_with("OK")
+    session._on_part(part(ok_inspection(), 1))
+    session._on_preview(make_preview(1, frames[item["frame"]], None))
+    assert live(window).weld._note == ""
+    session._on_part(part(ok_inspection(), 2))
+    assert "no picture of this part" in live(window).weld._note
 
 
 def test_the_button_asks_the_engine_for_a_test_picture(
     window: Window, publisher: Publisher, settings: ChannelSettings, qtbot: QtBot
 ) -> None:
-    assert not window._test.isEnabled(), "no engine was heard yet"
+    assert not live(window).test.isEnabled(), "no engine was heard yet"
     inbox = Inbox(settings)
     try:
 
         def heard() -> None:
             publisher.send(status())
-            assert window._test.isEnabled()
+            assert live(window).test.isEnabled()
 
         qtbot.waitUntil(heard, timeout=5000)
-        assert not inbox.asked()
+        assert not inbox.requests()
 
         def asked() -> None:
-            qtbot.mouseClick(window._test, Qt.MouseButton.LeftButton)
-            assert inbox.asked()
+            qtbot.mouseClick(live(window).test, Qt.MouseButton.LeftButton)
+            assert [type(request) for request in inbox.requests()] == [TestPicture]
 
         qtbot.waitUntil(asked, timeout=5000)
     finally:
         inbox.close()
 
 
-def test_without_an_engine_it_says_so(window: Window) -> None:
-    window._age()
-    assert window._lamp._lamp.word == "OFFLINE"
+def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> None:
+    session = window.session
+    session._on_status(status())
+    session._on_part(part(ok_inspection()))
+    assert live(window).lamp.lamp.word == "OK"
+    session._status_s -= 10
+    live(window).age()
+    window._on_status()
+    assert live(window).lamp.lamp.word == "OFFLINE"
+    assert "no word from the engine" in window._alarm.text()
 
 
 def test_a_restarted_engine_needs_no_new_panel(window: Window, settings: ChannelSettings, qtbot: QtBot) -> None:
@@ -104,13 +150,57 @@ def test_a_restarted_engine_needs_no_new_panel(window: Window, settings: Channel
 
         def told(end: Publisher = end) -> None:
             end.send(status())
-            assert window._lamp._lamp.word == "NO VERDICT"
+            assert live(window).lamp.lamp.word == "NO VERDICT"
 
         qtbot.waitUntil(told, timeout=5000)
         end.close()
-        window._status_s -= 10
-        window._age()
-        assert window._lamp._lamp.word == "OFFLINE"
+        window.session._status_s -= 10
+        live(window).age()
+        assert live(window).lamp.lamp.word == "OFFLINE"
+
+
+def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Window, qtbot: QtBot) -> None:
+    window.session._on_status(status(counts=Counts(7, 2, 1)))
+    window.session._on_part(part(nok_inspection(), 5))
+    window.go(2)
+    window.speak("de")
+    assert [window._buttons.button(i).text() for i in range(6)] == ["Live", "Verlauf", "Statistik", "Linie", "Alarme", "Einrichten"]
+    assert window._stack.currentIndex() == 2
+    window.dress("light")
+    assert live(window).facts.values["parts"].text() == "10"
+    assert live(window).facts.values["part"].text() == "5"
+    assert theme.colors() is theme.LIGHT
+    window.session._on_status(status())
+    assert live(window).lamp.lamp.word == "NOK"
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080)])
+def test_every_page_fits_the_screen_in_both_languages(window: Window, size: tuple[int, int], qtbot: QtBot) -> None:
+    window.resize(*size)
+    for language in ("en", "de"):
+        window.speak(language)
+        for index, page in enumerate(window._pages):
+            window.go(index)
+            hint = page.minimumSizeHint()
+            assert hint.width() <= size[0] - NAV_PX, page
+            assert hint.height() <= size[1] - HEADER_PX, page
+        setup = window._pages[5]
+        assert isinstance(setup, SetupPage)
+        for tab in (setup.login, setup.camera, setup.recipe, setup.masters, setup.people, setup.journal):
+            assert tab.minimumSizeHint().width() <= size[0] - NAV_PX - 20, tab
+            assert tab.minimumSizeHint().height() <= size[1] - HEADER_PX - TABS_PX, tab
+
+
+def test_keys_lead_to_pages(window: Window, qtbot: QtBot) -> None:
+    window.activateWindow()
+    for index, key in enumerate((Qt.Key.Key_F1, Qt.Key.Key_F2, Qt.Key.Key_F3)):
+        qtbot.keyClick(window, key)
+        assert window._stack.currentIndex() == index
+
+
+def test_a_lost_plc_is_told(window: Window) -> None:
+    window.session._on_status(status(Offline.PLC_SILENT))
+    assert live(window).lamp.lamp.word == "PLC LOST"
 
 
 def test_a_hanging_panel_costs_the_engine_nothing(settings: ChannelSettings, publisher: Publisher) -> None:
@@ -123,6 +213,21 @@ def test_a_hanging_panel_costs_the_engine_nothing(settings: ChannelSettings, pub
 def test_closing_leaves_no_window_behind(window: Window) -> None:
     window.close()
     assert not [w for w in QApplication.topLevelWidgets() if w.isVisible()]
+
+
+def test_pages_built_anew_leave_none_behind(window: Window, qtbot: QtBot) -> None:
+    def widgets() -> int:
+        qtbot.wait(50)
+        return len(QApplication.allWidgets())
+
+    window.speak("de")
+    window.speak("en")
+    before = widgets()
+    start = time.monotonic()
+    for _ in range(3):
+        window.speak("de")
+        window.speak("en")
+    assert widgets() <= before, f"after {time.monotonic() - start:.1f} s"
 
 
 def test_a_taken_channel_port_is_said(settings: ChannelSettings, publisher: Publisher) -> None:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from station.classify.decision import Thresholds, findings, mean_of, near_threshold, segment_kind
+from station.classify.decision import Thresholds, findings, mean_of, near_threshold, refused_kinds, segment_kind
 from station.classify.extent import CELL_PX, CELLS, Map
 from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, Ring, SegmentScores
 
@@ -102,3 +102,59 @@ def test_clear_segments_get_no_second_look() -> None:
     assert not near_threshold(SegmentScores(0.98, 0.01, 0.01), LIMITS)
     assert not near_threshold(SegmentScores(0.01, 0.98, 0.01), LIMITS)
     assert near_threshold(SegmentScores(0.6, 0.39, 0.01), LIMITS)
+
+
+def one_hole(columns: int) -> Map:
+    """A hole of so many cells in segment 5 (index 4)."""
+    maps = BLIND.copy()
+    maps[4, 0, 14:18, 10 : 10 + columns] = 1
+    return maps
+
+
+@pytest.mark.parametrize(("columns", "least_mm", "refused"), [(2, 0.0, True), (2, 0.3, False), (8, 0.3, True)])
+def test_a_finding_shorter_than_the_least_length_is_told_and_tolerated(columns: int, least_mm: float, refused: bool) -> None:
+    limits = Thresholds(0.5, 0.5, hole_min_mm=least_mm)
+    found = findings(row(s4=HOLE), one_hole(columns), limits, RING, UM)
+    assert len(found) == 1
+    kinds = refused_kinds(row(s4=HOLE), found, limits)
+    assert [i for i, kind in enumerate(kinds) if kind] == ([4] if refused else [])
+
+
+def test_what_could_not_be_measured_or_stands_beside_something_greater_is_never_tolerated() -> None:
+    limits = Thresholds(0.5, 0.5, hole_min_mm=5.0, missing_min_mm=5.0)
+    blind = findings(row(s4=HOLE, s9=GONE), BLIND, limits, RING, UM)
+    assert [i for i, kind in enumerate(refused_kinds(row(s4=HOLE, s9=GONE), blind, limits)) if kind] == [4, 9]
+    maps = one_hole(2)
+    maps[4, 0, 2:6, 20:30] = 1
+    some = Thresholds(0.5, 0.5, hole_min_mm=0.3)
+    found = findings(row(s4=HOLE), maps, some, RING, UM)
+    assert len(found) == 2
+    assert refused_kinds(row(s4=HOLE), found, some)[4] is Reason.HOLE
+
+
+def test_a_segment_may_have_a_limit_of_its_own() -> None:
+    scores = row(s4=SegmentScores(0.7, 0.2, 0.1), s5=SegmentScores(0.7, 0.2, 0.1))
+    limits = Thresholds(0.5, 0.5, segments=((5, 0.15),))
+    found = findings(scores, BLIND, limits, RING, UM)
+    assert [i for i, kind in enumerate(refused_kinds(scores, found, limits)) if kind] == [4]
+
+
+@settings(deadline=None)
+@given(SCORES, st.floats(0.05, 0.95), st.floats(0, 3), st.floats(0, 3), st.integers(0, 2**31))
+def test_least_lengths_only_tolerate_and_without_them_every_segment_over_its_limit_is_refused(
+    raw: list[tuple[float, float, float]], limit: float, hole_mm: float, missing_mm: float, seed: int
+) -> None:
+    scores = tuple(SegmentScores(a / s, b / s, c / s) for a, b, c in raw if (s := a + b + c) > 0.01)
+    if len(scores) < SEGMENTS:
+        return
+    maps = np.random.default_rng(seed).beta(0.2, 1.0, BLIND.shape).astype(np.float32)
+    strict, mild = Thresholds(limit, limit), Thresholds(limit, limit, (), hole_mm, missing_mm)
+    over = [segment_kind(s, strict) for s in scores]
+    assert refused_kinds(scores, findings(scores, maps, strict, RING, UM), strict) == over
+    kinds = refused_kinds(scores, findings(scores, maps, mild, RING, UM), mild)
+    assert all(kind in (None, before) for kind, before in zip(kinds, over, strict=True))
+    tolerated = [i for i, (kind, before) in enumerate(zip(kinds, over, strict=True)) if before and not kind]
+    found = findings(scores, maps, mild, RING, UM)
+    for i in tolerated:
+        here = [f for f in found if f.kind is over[i] and f.start_deg < (i + 1) * SEGMENT_DEG + 360 and f.end_deg > i * SEGMENT_DEG]
+        assert any(mild.tolerates(f) for f in here)

@@ -19,7 +19,8 @@ from station.inspection import Inspector
 from station.recipe import load_inspector
 from station.records import Part
 from station.replay.files import sources
-from station.settings import ArchiveSettings, Settings, for_images, for_recipe, load
+from station.settings import ArchiveSettings, Settings, for_images, for_recipe
+from station.settings_file import load
 from tests.conftest import MODEL
 from tests.parts import FRAMES, label_with, labels
 

@@ -3,7 +3,8 @@ from pathlib import Path
 import pytest
 
 from station.errors import SettingsError
-from station.settings import PylonSettings, load
+from station.settings import PylonSettings
+from station.settings_file import load
 from tests.conftest import ROOT
 
 GOOD = '[camera]\nkind = "pylon"\nserial = "1"\n'

@@ -14,19 +14,21 @@ import numpy as np
 import pytest
 
 from deploy.demo import free_ports
+from station.alarmlog import AlarmLog
 from station.archive.reader import read_records
 from station.archive.writer import Archive
 from station.camera.pylon import PylonCamera
 from station.classify.drift import Reference, write_reference
 from station.classify.onnx import LOOK
-from station.cycle import Listener
 from station.domain import Frame, Image, Purpose, Reason, Verdict
 from station.errors import ModelError, RecordError
 from station.events import Event, PartEvent
+from station.listener import Listener
 from station.plc.line import ModbusLine, make_line
 from station.plc.registers import REASON_CODES, CommandCode, Flags, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.recipe import prepare
+from station.requests import Request, TestPicture
 from station.settings import Settings
 from station.startup import make_cycle
 from station.watch import Watch
@@ -45,7 +47,7 @@ class Station:
     port: int
     folder: Path
     events: list[Event]
-    asked: threading.Event
+    asked: list[Request]
 
     def run(self, parts: list[Image | None], accept_simulated: bool = True) -> list[Answer]:
         """Pass parts through the line; None: no picture before the camera."""
@@ -97,14 +99,15 @@ def station(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     loaded = prepare(settings, 1)
     archive, line = Archive(settings.archive), make_line(settings.plc)
     line.start()
-    asked = threading.Event()
+    asked: list[Request] = []
 
-    def asks() -> bool:
-        wanted = asked.is_set()
-        asked.clear()
-        return wanted
+    def requests() -> list[Request]:
+        taken = asked.copy()
+        del asked[: len(taken)]
+        return taken
 
-    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None, asks))
+    alarm_log = AlarmLog(settings.archive.folder)
+    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None, requests), alarm_log)
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
@@ -112,6 +115,7 @@ def station(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     stop.set()
     thread.join(timeout=10)
     line.stop()
+    alarm_log.close()
     archive.close()
     assert not thread.is_alive()
 
@@ -180,7 +184,7 @@ def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(s
 
 def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(station: Station, frames: dict[str, Image]) -> None:
     (before,) = station.run([frames[label_with("OK")["frame"]]])
-    station.asked.set()
+    station.asked.append(TestPicture(time.time()))
     until = time.monotonic() + 20
     while len(station.part_events()) < 2 and time.monotonic() < until:
         time.sleep(0.05)
@@ -244,7 +248,7 @@ def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
     cv2.imwrite(str(tmp_path / "stored.png"), frames[label_with("hole")["frame"]])
     model = settings.model.model_copy(update={"self_test_path": tmp_path / "stored.png", "self_test_verdict": "NOK", "self_test_s": 0.5})
     loaded = prepare(settings.model_copy(update={"model": model}), 1)
-    watch = Watch(loaded, {}, (), 0.0)
+    watch = Watch(loaded, {}, None, 0.0)
     watch.idle()
     assert not watch.self_test_failed
     assert loaded.self_test is not None

@@ -1,0 +1,67 @@
+"""What people say of verdicts afterwards. The verdict itself is never changed; an opinion counts once two people share it."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from station.archive.journal import Kind, append, entries
+
+
+class Opinion(StrEnum):
+    """Of one verdict."""
+
+    RIGHT = "right"
+    FALSE_CALL = "false call"
+    """The part is OK, but was judged NOK."""
+    MISSED = "missed defect"
+    """The part is NOK, but was judged OK."""
+
+
+class State(StrEnum):
+    """How far a review is."""
+
+    NONE = "not reviewed"
+    ONE = "reviewed once"
+    AGREED = "two agree"
+    DISPUTED = "disputed"
+
+
+@dataclass(frozen=True, slots=True)
+class Review:
+    """All opinions of one part: the last of each person."""
+
+    opinions: dict[str, Opinion]
+
+    @property
+    def state(self) -> State:
+        """Two people must say the same, and nobody otherwise."""
+        if not self.opinions:
+            return State.NONE
+        if len(set(self.opinions.values())) > 1:
+            return State.DISPUTED
+        return State.AGREED if len(self.opinions) > 1 else State.ONE
+
+    @property
+    def agreed(self) -> Opinion | None:
+        """What two people say."""
+        return next(iter(self.opinions.values())) if self.state is State.AGREED else None
+
+
+def possible(verdict: str) -> tuple[Opinion, ...]:
+    """Opinions that one can have of a verdict; none of a part that was not judged."""
+    return {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}.get(verdict, ())
+
+
+def give(folder: Path, who: str, inspection_id: int, verdict: str, opinion: Opinion, comment: str = "") -> None:
+    """Raises RecordError, ValueError if one cannot think so of that verdict."""
+    if opinion not in possible(verdict):
+        raise ValueError(f"{opinion} cannot be said of {verdict}")
+    append(folder, Kind.REVIEW, who, str(inspection_id), verdict, opinion, comment)
+
+
+def reviews(folder: Path) -> dict[int, Review]:
+    """All reviewed parts. Raises RecordError."""
+    found: dict[int, dict[str, Opinion]] = {}
+    for entry in entries(folder, (Kind.REVIEW,), newest_first=False):
+        found.setdefault(int(entry.subject), {})[entry.who] = Opinion(entry.after)
+    return {number: Review(opinions) for number, opinions in found.items()}

@@ -1,0 +1,109 @@
+"""Small parts that all pages are made of."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QFrame,
+    QGridLayout,
+    QHeaderView,
+    QLabel,
+    QScrollArea,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+
+def label(text: str, name: str = "", wrap: bool = False) -> QLabel:
+    """A label in one of the style sheet's kinds."""
+    made = QLabel(text)
+    made.setObjectName(name)
+    made.setWordWrap(wrap)
+    return made
+
+
+class Facts(QFrame):
+    """Names with their values in a card."""
+
+    def __init__(self, names: dict[str, str], columns: int = 1, big: Sequence[str] = ()) -> None:
+        """`names`: key and what stands before the value."""
+        super().__init__()
+        self.setObjectName("card")
+        grid = QGridLayout(self)
+        grid.setVerticalSpacing(3)
+        self.values: dict[str, QLabel] = {}
+        rows = -(-len(names) // columns)
+        for index, (key, name) in enumerate(names.items()):
+            row, column = index % rows, index // rows * 2
+            grid.addWidget(label(name, "quiet"), row, column)
+            self.values[key] = label("–", "value" if key in big else "fact")
+            grid.addWidget(self.values[key], row, column + 1)
+            grid.setColumnStretch(column + 1, 1)
+
+    def set(self, **values: object) -> None:
+        """Texts of some keys."""
+        for key, value in values.items():
+            self.values[key].setText(str(value))
+
+
+def titled(title: str, inside: QWidget) -> QFrame:
+    """A card with a title."""
+    card = QFrame()
+    card.setObjectName("card")
+    if type(inside) is QWidget:
+        inside.setObjectName("plain")
+    column = QVBoxLayout(card)
+    column.setContentsMargins(10, 8, 10, 10)
+    column.addWidget(label(title, "quiet"))
+    column.addWidget(inside, 1)
+    return card
+
+
+def scrolled(page: QWidget) -> QScrollArea:
+    """A page that may be larger than its place."""
+    area = QScrollArea()
+    area.setWidgetResizable(True)
+    area.setWidget(page)
+    return area
+
+
+class Table(QTableWidget):
+    """Rows of text to read and choose from."""
+
+    def __init__(self, heads: Sequence[str], stretch: int = -1) -> None:
+        super().__init__(0, len(heads))
+        self.setHorizontalHeaderLabels(list(heads))
+        self.verticalHeader().hide()
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.setAlternatingRowColors(True)
+        self.setShowGrid(False)
+        self.setWordWrap(False)
+        self.verticalHeader().setDefaultSectionSize(38)
+        header = self.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(stretch % len(heads), QHeaderView.ResizeMode.Stretch)
+
+    def fill(self, rows: Sequence[Sequence[str]]) -> None:
+        """All rows anew; the chosen one stays chosen if it is there."""
+        chosen = self.currentRow()
+        self.setRowCount(len(rows))
+        for r, row in enumerate(rows):
+            for c, text in enumerate(row):
+                item = self.item(r, c)
+                if item is None:
+                    self.setItem(r, c, QTableWidgetItem(text))
+                elif item.text() != text:
+                    item.setText(text)
+        if chosen >= len(rows):
+            self.clearSelection()
+
+    def texts(self) -> list[list[str]]:
+        """What stands in it."""
+        cells = range(self.columnCount())
+        return [[item.text() if (item := self.item(r, c)) else "" for c in cells] for r in range(self.rowCount())]

@@ -1,0 +1,237 @@
+"""Past parts: the last 300 or what is searched for, one of them opened, reviewed, exported."""
+
+from pathlib import Path
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
+
+from station.archive.export import export
+from station.archive.reader import Row, Wanted, find, read_record, read_records
+from station.archive.review import Opinion, State, give, possible, reviews
+from station.domain import SEGMENTS, Reason, Verdict
+from station.errors import ImageError, LocateError, RecordError
+from station.panel.card import label
+from station.panel.history.filmstrip import Filmstrip
+from station.panel.history.record_view import RecordView
+from station.panel.pictures import of_record
+from station.panel.session import FILM, THUMB_PX, Session
+from station.panel.words import data, translate
+from station.panel.work import Told, WorkBar
+
+REFRESH_MS = 1000
+GALLERY = 60
+"""Pictures read for a gallery."""
+
+
+class HistoryPage(QWidget):
+    """Reads the archive; the engine need not run."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self.film, self.record = Filmstrip(), RecordView()
+        self._newest = 0
+        self._lay_out()
+        self.film.currentItemChanged.connect(self._on_chosen)
+        self.gallery.toggled.connect(self._on_gallery)
+        self.look_up.clicked.connect(self.search)
+        self.serial.returnPressed.connect(self.search)
+        for box in (self.verdict, self.kind, self.segment, self.score):
+            box.currentIndexChanged.connect(self.search)
+        self._work.done.connect(self._on_pictures)
+        self._work.failed.connect(self._problem.setText)
+        session.user_changed.connect(self._on_user)
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._follow)
+        self._timer.start(REFRESH_MS)
+        self.search()
+        self._on_user()
+
+    def _lay_out(self) -> None:
+        self.serial = QLineEdit()
+        self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
+        self.verdict, self.kind, self.segment, self.score = QComboBox(), QComboBox(), QComboBox(), QComboBox()
+        self.verdict.addItem(translate("history", "all verdicts"), None)
+        for verdict in Verdict:
+            self.verdict.addItem(str(verdict), str(verdict))
+        self.kind.addItem(translate("history", "all reasons"), None)
+        for reason in Reason:
+            self.kind.addItem(data(reason), str(reason))
+        self.segment.addItem(translate("history", "all segments"), None)
+        segment = translate("history", "segment")
+        for index in range(1, SEGMENTS + 1):
+            self.segment.addItem(f"{segment} {index}", index)
+        self.score.addItem(translate("history", "any score"), None)
+        for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95):
+            self.score.addItem(f"≥ {score:g}", score)
+        self.look_up, self.gallery = QPushButton(translate("history", "Search")), QPushButton(translate("history", "Gallery"))
+        self.gallery.setCheckable(True)
+        top = QHBoxLayout()
+        for widget in (self.serial, self.verdict, self.kind, self.segment, self.score, self.look_up, self.gallery):
+            top.addWidget(widget, 1 if widget is self.serial else 0)
+        self._count, self._problem, self._work = label("", "quiet"), label("", "problem", wrap=True), WorkBar()
+        left = QWidget()
+        column = QVBoxLayout(left)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.film, 1)
+        column.addWidget(self._count)
+        split = QSplitter(Qt.Orientation.Horizontal)
+        split.addWidget(left)
+        split.addWidget(self.record)
+        split.setSizes([310, 780])
+        split.setStretchFactor(1, 1)
+        self.comment = QLineEdit()
+        self.comment.setPlaceholderText(translate("history", "comment"))
+        self._review = label("", "fact")
+        self.opinions = {
+            Opinion.RIGHT: QPushButton(translate("history", "Verdict is right")),
+            Opinion.FALSE_CALL: QPushButton(translate("history", "False call")),
+            Opinion.MISSED: QPushButton(translate("history", "Missed defect")),
+        }
+        self.export = QPushButton(translate("history", "Export reviewed…"))
+        bottom = QHBoxLayout()
+        bottom.addWidget(self.comment, 1)
+        for opinion, button in self.opinions.items():
+            button.clicked.connect(lambda _=False, o=opinion: self.say(o))
+            bottom.addWidget(button)
+        self.export.clicked.connect(self._ask_export)
+        bottom.addWidget(self.export)
+        rows = QVBoxLayout(self)
+        rows.addLayout(top)
+        rows.addWidget(split, 1)
+        rows.addWidget(self._review)
+        rows.addLayout(bottom)
+        rows.addWidget(self._work)
+        rows.addWidget(self._problem)
+
+    def wanted(self) -> Wanted:
+        """What the fields say."""
+        segment, score = self.segment.currentData(), self.score.currentData()
+        return Wanted(
+            serial=self.serial.text().strip() or None,
+            verdict=self.verdict.currentData(),
+            reason=self.kind.currentData(),
+            segment=segment,
+            min_score=0.05 if segment is not None and score is None else score,
+            newest_first=True,
+            limit=FILM,
+        )
+
+    def search(self) -> None:
+        """Read the index."""
+        try:
+            rows = find(self._session.folder, self.wanted())
+            known = reviews(self._session.folder)
+        except RecordError as error:
+            rows, known = [], {}
+            self._problem.setText(str(error))
+        else:
+            self._problem.setText("")
+        self._newest = max((row.inspection_id for row in rows), default=0)
+        self.film.fill(rows, self._session.thumbs, known)
+        more, parts = translate("history", "the newest 300") if len(rows) == FILM else "", translate("history", "parts")
+        self._count.setText(f"{len(rows)} {parts}  {more}")
+        if self.film.chosen() is None and rows:
+            self.film.setCurrentRow(0)
+        if self.gallery.isChecked():
+            self._read_pictures(rows)
+
+    def _follow(self) -> None:
+        """New parts come by themselves, but not while somebody looks further down."""
+        last = self._session.last
+        newer = last is not None and last.event.record.inspection_id > self._newest
+        if newer and self.isVisible() and not self._work.busy and self.film.verticalScrollBar().value() == 0:
+            self.search()
+
+    def _on_chosen(self) -> None:
+        number = self.film.chosen()
+        row = None if number is None else self.film.rows.get(number)
+        if row is not None:
+            self.record.show_row(self._session.folder, row)
+        self._on_user()
+
+    def _on_user(self) -> None:
+        number, user = self.film.chosen(), self._session.user
+        row = None if number is None else self.film.rows.get(number)
+        for opinion, button in self.opinions.items():
+            button.setEnabled(user is not None and row is not None and opinion in possible(row.verdict))
+        self.export.setEnabled(user is not None)
+        if row is None:
+            self._review.setText("")
+            return
+        review = reviews(self._session.folder).get(row.inspection_id)
+        state = data(review.state if review else State.NONE)
+        said = ", ".join(f"{who}: {data(opinion)}" for who, opinion in review.opinions.items()) if review else ""
+        hint = translate("history", "log in to review") if user is None else ""
+        self._review.setText(" · ".join(text for text in (state, said, hint) if text))
+
+    def say(self, opinion: Opinion) -> None:
+        """Whoever is logged in says it of the chosen part."""
+        number, user = self.film.chosen(), self._session.user
+        if number is None or user is None:
+            return
+        try:
+            give(self._session.folder, user.name, number, self.film.rows[number].verdict, opinion, self.comment.text().strip())
+        except RecordError as error:
+            self._problem.setText(str(error))
+        self.comment.clear()
+        self.search()
+        self._on_user()
+
+    def _on_gallery(self, gallery: bool) -> None:
+        self.film.as_gallery(gallery)
+        self.search()
+
+    def _read_pictures(self, rows: list[Row]) -> None:
+        folder, missing = self._session.folder, [r for r in rows[:GALLERY] if r.inspection_id not in self._session.thumbs]
+        if missing:
+            self._work.start(translate("history", "pictures"), lambda told: _thumbs(folder, missing, told))
+
+    def _on_pictures(self, found: object) -> None:
+        if isinstance(found, dict):
+            self.film.fill(list(self.film.rows.values()), {**self._session.thumbs, **found}, reviews(self._session.folder))
+        else:
+            self._problem.setText(str(found))
+
+    def _ask_export(self) -> None:
+        name = QFileDialog.getExistingDirectory(self, translate("history", "Folder for the crops of reviewed parts"))
+        if name:
+            self.export_to(Path(name) / "reviewed")
+
+    def export_to(self, target: Path) -> None:
+        """Crops of the parts that two people agree on."""
+        folder = self._session.folder
+
+        def work(told: Told) -> str:
+            entries = []
+            agreed = [number for number, review in reviews(folder).items() if review.agreed is not None]
+            for count, number in enumerate(agreed):
+                entries += list(read_records(folder, Wanted(number=number)))
+                if not told(count, len(agreed)):
+                    return ""
+            problems = list(export(entries, folder, target, "reviewed"))
+            parts, left_out = translate("history", "parts"), translate("history", "left out")
+            return f"{target}: {len(entries) - len(problems)} {parts}, {len(problems)} {left_out}"
+
+        self._work.start(translate("history", "export"), work)
+
+    def close_page(self) -> None:
+        """Nothing is left running."""
+        self._timer.stop()
+        self._work.close_work()
+
+
+def _thumbs(folder: Path, rows: list[Row], told: Told) -> dict[int, QImage]:
+    found: dict[int, QImage] = {}
+    for count, row in enumerate(rows):
+        if not told(count, len(rows)):
+            break
+        record, _ = read_record(folder, row)
+        if record is not None:
+            try:
+                image = of_record(folder, record)[0].image
+            except (ImageError, LocateError):
+                continue
+            found[row.inspection_id] = image.scaled(THUMB_PX, THUMB_PX, Qt.AspectRatioMode.KeepAspectRatio)
+    return found

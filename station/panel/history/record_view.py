@@ -1,0 +1,116 @@
+"""One record with everything that led to its verdict."""
+
+from pathlib import Path
+
+from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
+
+from station.archive.decided import segment_kinds
+from station.archive.reader import Row, read_record
+from station.errors import ImageError, LocateError
+from station.panel.card import Facts, Table, label, titled
+from station.panel.live.strip_view import StripView
+from station.panel.live.weld_view import WeldView
+from station.panel.pictures import nok_scores, of_record
+from station.panel.words import data, translate
+from station.records import Record
+
+
+class RecordView(QWidget):
+    """Picture, strip, findings, figures, who judged."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.record: Record | None = None
+        self.weld, self.strip = WeldView(), StripView(110)
+        self.findings = Table(
+            (
+                translate("history", "finding"),
+                translate("history", "from °"),
+                translate("history", "to °"),
+                translate("history", "length mm"),
+                translate("history", "width mm"),
+                translate("history", "area mm²"),
+                translate("history", "score"),
+            ),
+            stretch=0,
+        )
+        self.findings.setMaximumHeight(150)
+        self.facts = Facts(
+            {
+                "verdict": translate("history", "verdict"),
+                "serial": translate("history", "serial"),
+                "trigger": translate("history", "trigger"),
+                "time": translate("history", "time"),
+                "shown": translate("history", "seen by the PLC"),
+                "quality": translate("history", "brightness · sharpness"),
+                "ring": translate("history", "ring x · y · r px"),
+                "steps": translate("history", "grab · find · unwrap · judge ms"),
+                "limits": translate("history", "limits hole · missing weld"),
+                "model": translate("history", "model · recipe"),
+                "origin": translate("history", "origin · purpose"),
+            }
+        )
+        self.problem: QLabel = label("", "problem", wrap=True)
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.addWidget(self.weld, 0, 0)
+        side = QVBoxLayout()
+        side.addWidget(self.facts)
+        side.addWidget(self.problem)
+        side.addStretch(1)
+        grid.addLayout(side, 0, 1)
+        grid.addWidget(self.strip, 1, 0, 1, 2)
+        grid.addWidget(titled(translate("history", "findings"), self.findings), 2, 0, 1, 2)
+        grid.setRowStretch(0, 1)
+        grid.setColumnStretch(0, 1)
+
+    def show_row(self, folder: Path, row: Row) -> None:
+        """Read it from disk; what is missing or wrong is said."""
+        self.record, problem = read_record(folder, row)
+        self.problem.setText("" if problem is None else f"{row.record_file}: {problem}")
+        if self.record is None:
+            self.weld.show_weld(None, translate("history", "the record cannot be read"))
+            self.strip.show_strip(None, (), ())
+            self.findings.fill([])
+            self.facts.set(**dict.fromkeys(self.facts.values, "–"))
+            return
+        record, inspection = self.record, self.record.inspection
+        nok = tuple(kind is not None for kind in segment_kinds(record))
+        try:
+            drawn, strip = of_record(folder, record)
+            self.weld.show_weld(drawn)
+        except (ImageError, LocateError) as error:
+            strip = None
+            self.weld.show_weld(None, data(str(error)) if len(str(error)) < 60 else translate("history", "its picture cannot be read"))
+        self.strip.show_strip(strip, nok_scores(record), nok)
+        self.findings.fill(
+            [
+                (
+                    data(f.kind),
+                    f"{f.start_deg:.1f}",
+                    f"{f.end_deg:.1f}",
+                    f"{f.length_mm:.2f}",
+                    "–" if f.width_mm is None else f"{f.width_mm:.2f}",
+                    "–" if f.area_mm2 is None else f"{f.area_mm2:.2f}",
+                    f"{f.score:.3f}",
+                )
+                for f in inspection.findings
+            ]
+        )
+        reason = "" if inspection.reason is None else f": {data(inspection.reason)}"
+        ring, q, t, p = inspection.ring, inspection.quality, inspection.timing, record.provenance
+        steps = (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms)
+        shown = {True: translate("history", "yes"), False: translate("history", "no"), None: translate("history", "unknown")}
+        self.facts.set(
+            verdict=f"{record.verdict}{reason}",
+            serial=record.serial or "–",
+            trigger=record.trigger_id or "–",
+            time=f"{record.grabbed_at.astimezone():%d.%m.%Y %H:%M:%S}",
+            shown=shown[row.shown_to_plc],
+            quality="–" if q is None else f"{q.mean_dn:.0f} · {q.sharpness:.3f}",
+            ring="–" if ring is None else f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f}",
+            steps=" · ".join("–" if ms is None else f"{ms:.0f}" for ms in steps),
+            limits=f"{p.hole_threshold:.2f} · {p.missing_threshold:.2f}",
+            model=f"{p.model_version} · {p.recipe}",
+            origin=f"{data(record.origin)} · {data(record.purpose)}",
+        )

@@ -1,0 +1,1 @@
+"""The PLC side: bits, registers, edges."""

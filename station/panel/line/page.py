@@ -1,0 +1,174 @@
+"""The PLC side: live bits and registers with their names, edges with milliseconds, the word order, bits set by hand."""
+
+import struct
+from collections import deque
+from datetime import datetime
+from enum import IntFlag
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtWidgets import QComboBox, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout, QWidget
+
+from station.errors import RecordError
+from station.panel import theme
+from station.panel.card import Table, label, titled
+from station.panel.session import Session
+from station.panel.words import data, translate
+from station.plc.buslog import Edge, tail_bus
+from station.plc.registers import BY_NAME, COMMAND_START, MAP, STATUS_START, Control, Offline, Status, Value, VerdictCode, unpack_window
+from station.requests import Service
+from station.users import Level
+
+EDGES = 400
+REFRESH_MS = 500
+
+
+class LinePage(QWidget):
+    """Follows the status events and the bus recorder's file."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self._edges: deque[Edge] = deque(maxlen=EDGES)
+        self._place: tuple[str, int] = ("", 0)
+        self._lamps: dict[tuple[str, IntFlag], QLabel] = {}
+        """By register: bits of CONTROL and STATUS are equal numbers."""
+        self.registers = Table((translate("line", "register"), translate("line", "name"), translate("line", "value")), stretch=2)
+        self.edges = Table(
+            (
+                translate("line", "time"),
+                translate("line", "by"),
+                translate("line", "what"),
+                translate("line", "value"),
+                translate("line", "note"),
+            ),
+            stretch=4,
+        )
+        self._words = label("", "quiet", wrap=True)
+        self._problem = label("", "problem")
+        self.service = QPushButton(translate("line", "Service mode"))
+        self.service.setCheckable(True)
+        self.service.clicked.connect(self._toggle_service)
+        self.bits = QComboBox()
+        self.bits.addItem(translate("line", "no bit"), 0)
+        for flag in Status:
+            self.bits.addItem(str(flag.name), int(flag))
+        self.bits.currentIndexChanged.connect(self._set_bit)
+        self._lay_out()
+        session.status_changed.connect(self._on_status)
+        session.service_changed.connect(self._on_service)
+        session.user_changed.connect(self._on_service)
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._read_edges)
+        self._timer.start(REFRESH_MS)
+        self._on_status()
+        self._on_service()
+        self._read_edges()
+
+    def _lay_out(self) -> None:
+        bits = QFrame()
+        bits.setObjectName("card")
+        grid = QGridLayout(bits)
+        grid.setSpacing(4)
+        here = translate("line", "station")
+        both: tuple[tuple[str, str, type[IntFlag]], ...] = (("CONTROL", f"PLC → {here}", Control), ("STATUS", f"{here} → PLC", Status))
+        for row, (register, title, flags) in enumerate(both):
+            grid.addWidget(label(title, "quiet"), row * 3, 0, 1, 8)
+            for index, flag in enumerate(flags):
+                lamp = QLabel(str(flag.name))
+                lamp.setAlignment(Qt.AlignmentFlag.AlignCenter)
+                lamp.setMinimumHeight(30)
+                self._lamps[register, flag] = lamp
+                grid.addWidget(lamp, row * 3 + 1 + index // 8, index % 8)
+        hand = QHBoxLayout()
+        for widget in (self.service, label(translate("line", "set one bit of STATUS by hand:"), "quiet"), self.bits, self._problem):
+            hand.addWidget(widget)
+        hand.addStretch(1)
+        below = QSplitter(Qt.Orientation.Horizontal)
+        below.addWidget(titled(translate("line", "Registers as the PLC has them"), self.registers))
+        below.addWidget(titled(translate("line", "Edges on the bus, the newest first"), self.edges))
+        below.setSizes([420, 660])
+        column = QVBoxLayout(self)
+        column.addWidget(bits)
+        column.addLayout(hand)
+        column.addWidget(self._words)
+        column.addWidget(below, 1)
+
+    def _on_status(self) -> None:
+        status = self._session.status
+        if status is None or not status.status_words or not (self.isVisible() or self.registers.rowCount() == 0):
+            return
+        values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(STATUS_START, list(status.status_words))
+        held = {"CONTROL": Control(int(str(values["CONTROL"])) & 0xFF), "STATUS": status.status}
+        c = theme.colors()
+        for (register, flag), lamp in self._lamps.items():
+            on = bool(flag & held[register])
+            said = f"● {flag.name}" if on else f"○ {flag.name}"
+            if lamp.text() != said:
+                lamp.setText(said)
+                on_style = f"background: {c.accent}; color: {c.background}; font-weight: 700;"
+                lamp.setStyleSheet("border-radius: 4px; font-size: 12px; " + (on_style if on else f"background: {c.raised};"))
+        self.registers.fill([(str(r.address), r.name, _shown(r.name, values[r.name])) for r in MAP])
+        words = status.status_words
+        for_u32, for_f32 = (words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32"))
+        number = struct.unpack(">f", struct.pack(">HH", *for_f32))[0]
+        self._words.setText(
+            translate("line", "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:")
+            + f" {for_u32[0]:04X} {for_u32[1]:04X} · {for_f32[0]:04X} {for_f32[1]:04X} ({number:.3f}). "
+            + translate("line", "If the PLC reads 16#56781234, exchange its words or set plc.low_word_first.")
+        )
+
+    def _on_service(self) -> None:
+        session = self._session
+        self.service.setChecked(session.service is not None)
+        self.service.setEnabled(session.may(Level.SETTER))
+        self.bits.setEnabled(session.service is not None)
+        hint = "" if session.may(Level.SETTER) else translate("line", "log in as setter first (page Setup)")
+        self._problem.setText(hint)
+        if session.service is None:
+            self.bits.setCurrentIndex(0)
+
+    def _toggle_service(self) -> None:
+        session = self._session
+        if session.service is not None:
+            session.end_service()
+        elif session.user is not None and session.may(Level.SETTER):
+            session.serve(Service(0.0, session.user.name))
+
+    def _set_bit(self) -> None:
+        service = self._session.service
+        if service is not None:
+            self._session.serve(Service(0.0, service.who, bit=int(self.bits.currentData())))
+
+    def _read_edges(self) -> None:
+        if not (self.isVisible() or not self._edges):
+            return
+        try:
+            new, self._place = tail_bus(self._session.folder, self._place, EDGES)
+        except RecordError as error:
+            self._problem.setText(str(error))
+            return
+        if not new:
+            return
+        self._edges.extend(new)
+        rows = [(_time(e.time), data(e.by), e.name, str(e.value), data(e.note) if e.note else "") for e in reversed(self._edges)]
+        self.edges.fill(rows)
+
+    def close_page(self) -> None:
+        """Stop following."""
+        self._timer.stop()
+
+
+def _time(utc: str) -> str:
+    return f"{datetime.fromisoformat(utc).astimezone():%H:%M:%S.%f}"[:-3]
+
+
+def _shown(name: str, value: Value) -> str:
+    if name == "VERDICT":
+        return f"{value} {VerdictCode(int(str(value))).name}"
+    if name == "OFFLINE_REASON":
+        return f"{value} {Offline(int(str(value))).name}"
+    if name in ("STATUS", "CONTROL", "ERROR_CODE", "CONFIG_CRC", "FLAGS", "VERDICT_INV"):
+        return f"16#{int(str(value)):04X}"
+    if isinstance(value, float):
+        return f"{value:.3f}"
+    return " ".join(map(str, value)) if isinstance(value, tuple) else str(value)

@@ -1,0 +1,1 @@
+"""What the operator looks at: frame, strip, lamp, clock face."""

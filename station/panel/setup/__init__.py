@@ -1,0 +1,1 @@
+"""Behind a login: camera, recipe, masters, users, journal."""

@@ -1,0 +1,149 @@
+"""Camera and light: live pictures with numbers for focus and brightness, histogram, how well the ring is found; exposure and gain."""
+
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+
+from station.domain import Ring
+from station.errors import RecordError, SettingsError
+from station.events import LookEvent
+from station.panel.card import Facts, label, titled
+from station.panel.live.weld_view import Drawn, WeldView
+from station.panel.pictures import drawn
+from station.panel.session import Session
+from station.panel.setup.change import MIN_REASON, change
+from station.panel.setup.field import NumberField
+from station.panel.statistics.charts import Chart
+from station.panel.words import data, translate
+from station.requests import Service
+from station.settings import PylonSettings
+from station.users import Level
+
+
+class CameraPage(QWidget):
+    """Pictures are taken in service mode: READY is 0, nothing is recorded."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self._best = 0.0
+        self._ring: Ring | None = None
+        self.live = QPushButton(translate("camera", "Live pictures"))
+        self.live.setCheckable(True)
+        self.live.clicked.connect(self._toggle)
+        self.exposure, self.gain = NumberField(1.0, 1_000_000.0, "µs"), NumberField(0.0, 48.0, "dB")
+        self.reason, self.save = QLineEdit(), QPushButton(translate("camera", "Save"))
+        self.reason.setPlaceholderText(translate("camera", "reason (needed)"))
+        self.problem = label("", "problem", wrap=True)
+        self.weld, self.histogram = WeldView(), Chart(translate("camera", "grey levels"))
+        self.facts = Facts(
+            {
+                "focus": translate("camera", "sharpness · best so far"),
+                "brightness": translate("camera", "brightness (0 to 255)"),
+                "saturated": translate("camera", "saturated"),
+                "radius": translate("camera", "ring radius · expected px"),
+                "residual": translate("camera", "ring residual px · support"),
+            },
+            big=("focus",),
+        )
+        box = QWidget()
+        form = QGridLayout(box)
+        form.setVerticalSpacing(2)
+        for place, (name, field) in enumerate(((translate("camera", "exposure"), self.exposure), (translate("camera", "gain"), self.gain))):
+            form.addWidget(label(name), place, 0)
+            form.addWidget(field, place, 1)
+        form.addWidget(self.reason, 2, 0, 1, 2)
+        form.addWidget(self.save, 3, 0, 1, 2)
+        side = QWidget()
+        side.setFixedWidth(420)
+        column = QVBoxLayout(side)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.live)
+        column.addWidget(self.facts)
+        column.addWidget(self.histogram, 1)
+        column.addWidget(titled(translate("camera", "settings"), box))
+        column.addWidget(self.problem)
+        row = QHBoxLayout(self)
+        row.addWidget(self.weld, 1)
+        row.addWidget(side)
+        for field in (self.exposure, self.gain):
+            field.changed.connect(self._look)
+        self.reason.textChanged.connect(self._look)
+        self.save.clicked.connect(self._save)
+        session.look_came.connect(self._on_look)
+        session.preview_came.connect(self._on_preview)
+        session.user_changed.connect(self._look)
+        session.change_refused.connect(self._fill)
+        session.service_changed.connect(self._look)
+        self._fill()
+
+    def _fill(self) -> None:
+        camera = self._session.settings.camera
+        if isinstance(camera, PylonSettings):
+            self.exposure.set(camera.exposure_us)
+            self.gain.set(camera.gain_db)
+        self._look()
+
+    def _look(self) -> None:
+        session, camera = self._session, self._session.settings.camera
+        looking = session.service is not None and session.service.look
+        self.live.setChecked(looking)
+        self.live.setEnabled(session.may(Level.SETTER))
+        used = (camera.exposure_us, camera.gain_db) if isinstance(camera, PylonSettings) else None
+        for field in (self.exposure, self.gain):
+            field.setEnabled(used is not None and session.may(Level.SETTER))
+        changed = used is not None and (self.exposure.value, self.gain.value) != used
+        well = changed and self.exposure.value is not None and self.gain.value is not None
+        self.save.setEnabled(well and session.may(Level.SETTER) and len(self.reason.text().strip()) >= MIN_REASON)
+        self.problem.setText("" if session.may(Level.SETTER) else translate("camera", "log in as setter first"))
+        if looking and session.user is not None and self.exposure.value is not None and self.gain.value is not None:
+            wanted = Service(0.0, session.user.name, look=True, exposure_us=self.exposure.value, gain_db=self.gain.value)
+            if wanted != session.service:
+                session.service = wanted  # said with the next renewal
+
+    def _toggle(self) -> None:
+        session = self._session
+        if session.service is not None:
+            session.end_service()
+        elif session.user is not None and session.may(Level.SETTER):
+            self._best = 0.0
+            session.serve(Service(0.0, session.user.name, look=True, exposure_us=self.exposure.value, gain_db=self.gain.value))
+
+    def _on_look(self, event: LookEvent) -> None:
+        self._ring = event.ring
+        self._best = max(self._best, event.sharpness)
+        weld = self._session.settings.weld
+        expected = weld.radius_mm * 1000 / weld.um_per_px
+        ring = event.ring
+        self.facts.set(
+            focus=f"{event.sharpness:.4f} · {self._best:.4f}",
+            brightness=f"{event.mean_dn:.0f}",
+            saturated=f"{event.saturated_share:.1%}",
+            radius="–" if ring is None else f"{ring.radius_px:.1f} · {expected:.1f}",
+            residual="–" if ring is None else f"{ring.residual_px:.2f} · {ring.support:.0%}",
+        )
+        self.histogram.show_counts(event.histogram, 0, 4)
+        if event.problem:
+            self.problem.setText(data(event.problem))
+        elif self._session.may(Level.SETTER):
+            self.problem.setText("")
+
+    def _on_preview(self) -> None:
+        preview = self._session.look_preview
+        if preview is not None and self._session.service is not None:
+            plain = drawn(preview, None)
+            self.weld.show_weld(Drawn(plain.image, plain.scale, plain.origin_px, self._ring, (), ()))
+
+    def _save(self) -> None:
+        camera = self._session.settings.camera
+        if not isinstance(camera, PylonSettings) or self.exposure.value is None or self.gain.value is None:
+            return
+        new = {"exposure_us": (camera.exposure_us, self.exposure.value), "gain_db": (camera.gain_db, self.gain.value)}
+        try:
+            change(self._session, ("camera",), {k: pair for k, pair in new.items() if pair[0] != pair[1]}, self.reason.text())
+        except (SettingsError, RecordError) as error:
+            self.problem.setText(str(error))
+            return
+        self.reason.clear()
+        self._fill()
+
+    def close_page(self) -> None:
+        """The session ends service mode."""

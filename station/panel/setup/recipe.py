@@ -1,0 +1,227 @@
+"""Limits of a recipe: what they would have done to the parts of the archive is shown before they can be saved, with a reason."""
+
+from PySide6.QtWidgets import QComboBox, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+
+from station.archive.reader import Wanted, find, read_words
+from station.archive.whatif import WhatIf, what_if
+from station.classify.decision import Thresholds
+from station.classify.onnx import Classifier
+from station.errors import ModelError, RecordError, SettingsError
+from station.panel.card import Table, label, titled
+from station.panel.session import Session
+from station.panel.setup.change import MIN_REASON, change
+from station.panel.setup.field import NumberField, SegmentLimits
+from station.panel.words import translate
+from station.panel.work import Told, WorkBar
+from station.records import Record
+from station.settings import Settings, for_recipe
+from station.users import Level
+
+PARTS = 5000
+"""The newest parts that are scored again."""
+FIELDS = {
+    "hole_threshold": ("model", 0.01, 0.99),
+    "missing_threshold": ("model", 0.01, 0.99),
+    "hole_min_mm": ("model", 0.0, 5.0),
+    "missing_min_mm": ("model", 0.0, 5.0),
+    "min_mean_dn": ("quality", 0.0, 255.0),
+    "max_dark_share": ("quality", 0.0, 1.0),
+    "max_saturated_share": ("quality", 0.0, 1.0),
+    "min_sharpness": ("quality", 0.0, 10.0),
+}
+
+
+Values = tuple[dict[str, float], dict[int, float]]
+"""Of the fields by key, of the single segments by number."""
+
+
+class RecipePage(QWidget):
+    """Thresholds and limits of picture quality."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self._in_use: dict[str, float] = {}
+        self._asked: Values | None = None
+        """Values of the last what-if."""
+        self.recipe = QComboBox()
+        word = translate("recipe", "recipe")
+        for number in sorted({1, *session.settings.recipes}):
+            self.recipe.addItem(f"{word} {number}", number)
+        names = {
+            "hole_threshold": translate("recipe", "threshold of holes"),
+            "missing_threshold": translate("recipe", "threshold of missing weld"),
+            "hole_min_mm": translate("recipe", "least length of holes, mm"),
+            "missing_min_mm": translate("recipe", "least length of missing weld, mm"),
+            "min_mean_dn": translate("recipe", "least brightness"),
+            "max_dark_share": translate("recipe", "greatest dark share"),
+            "max_saturated_share": translate("recipe", "greatest saturated share"),
+            "min_sharpness": translate("recipe", "least sharpness"),
+        }
+        self.fields = {key: NumberField(low, high) for key, (_, low, high) in FIELDS.items()}
+        self.segments = SegmentLimits()
+        self.segments.changed.connect(self._look)
+        heads = (
+            translate("recipe", "part"),
+            translate("recipe", "serial"),
+            translate("recipe", "was"),
+            translate("recipe", "would be"),
+            translate("recipe", "segment"),
+            translate("recipe", "score"),
+        )
+        self.released, self.refused = Table(heads, stretch=1), Table(heads, stretch=1)
+        self.ask, self.save = QPushButton(translate("recipe", "What if?")), QPushButton(translate("recipe", "Save"))
+        self.reason = QLineEdit()
+        self.reason.setPlaceholderText(translate("recipe", "reason (needed)"))
+        self.said, self.problem, self._work = label("", "title"), label("", "problem", wrap=True), WorkBar()
+        box = QWidget()
+        form = QGridLayout(box)
+        form.setVerticalSpacing(2)
+        form.addWidget(self.recipe, 0, 0, 1, 2)
+        for place, (key, name) in enumerate(names.items(), 1):
+            form.addWidget(label(name), place, 0)
+            form.addWidget(self.fields[key], place, 1)
+            self.fields[key].changed.connect(self._look)
+        form.addWidget(label(translate("recipe", "limits of single segments")), len(names) + 1, 0)
+        form.addWidget(self.segments, len(names) + 1, 1)
+        right = QVBoxLayout()
+        right.addWidget(self.said)
+        right.addWidget(titled(translate("recipe", "would be released (NOK → OK): possible escapes"), self.released), 1)
+        right.addWidget(titled(translate("recipe", "would be refused (OK → NOK): possible false calls"), self.refused), 1)
+        below = QHBoxLayout()
+        for widget, stretch in ((self.ask, 0), (self.reason, 1), (self.save, 0)):
+            below.addWidget(widget, stretch)
+        right.addLayout(below)
+        right.addWidget(self._work)
+        right.addWidget(self.problem)
+        left = QVBoxLayout()
+        left.addWidget(titled(translate("recipe", "limits"), box))
+        left.addStretch(1)
+        row = QHBoxLayout(self)
+        row.addLayout(left, 2)
+        row.addLayout(right, 3)
+        self.ask.clicked.connect(self._ask)
+        self.save.clicked.connect(self._save)
+        self.reason.textChanged.connect(self._look)
+        self.recipe.currentIndexChanged.connect(self._fill)
+        self._work.done.connect(self._on_done)
+        self._work.failed.connect(self.problem.setText)
+        session.user_changed.connect(self._look)
+        session.change_refused.connect(self._on_refused)
+        self._fill()
+
+    def _fill(self) -> None:
+        """The limits in use."""
+        settings = for_recipe(self._session.settings, int(self.recipe.currentData()))
+        try:
+            self._in_use = _limits(settings)
+            self._segments_in_use = dict(settings.model.segment_thresholds)
+        except ModelError as error:
+            self.problem.setText(str(error))
+            return
+        self._asked = None
+        self.segments.set(self._segments_in_use)
+        for key, field in self.fields.items():
+            field.set(self._in_use[key])
+        self._look()
+
+    def values(self) -> Values | None:
+        """What stands in the fields; None if something is not allowed."""
+        numbers = {key: field.value for key, field in self.fields.items() if field.value is not None}
+        segments = self.segments.value
+        return None if len(numbers) < len(FIELDS) or segments is None else (numbers, segments)
+
+    def _look(self) -> None:
+        values = self.values()
+        changed = values is not None and values != ({k: float(f"{v:.6g}") for k, v in self._in_use.items()}, self._segments_in_use)
+        self.ask.setEnabled(changed and not self._work.busy)
+        allowed = self._session.may(Level.QUALITY)
+        self.save.setEnabled(changed and allowed and values == self._asked and len(self.reason.text().strip()) >= MIN_REASON)
+        hints = (
+            (not allowed, translate("recipe", "log in as quality to save")),
+            (changed and values != self._asked, translate("recipe", "ask what if before saving")),
+            (changed and len(self.reason.text().strip()) < MIN_REASON, translate("recipe", "a reason is needed")),
+        )
+        self.save.setToolTip(next((text for needed, text in hints if needed), ""))
+
+    def _ask(self) -> None:
+        values, folder = self.values(), self._session.folder
+        if values is None:
+            return
+        new, segments = values
+        quality = self._session.settings.quality.model_copy(update={k: v for k, v in new.items() if FIELDS[k][0] == "quality"})
+        sizes = (new["hole_min_mm"], new["missing_min_mm"])
+        thresholds = Thresholds(new["hole_threshold"], new["missing_threshold"], tuple(sorted(segments.items())), *sizes)
+        number = int(self.recipe.currentData())
+
+        def work(told: Told) -> tuple[Values, WhatIf] | None:
+            rows = find(folder, Wanted(newest_first=True, limit=PARTS))
+            records: list[Record] = []
+            for count, row in enumerate(rows):
+                if count % 20 == 0 and not told(count, len(rows)):
+                    return None
+                record, _ = read_words(folder, row)
+                if record is not None and record.provenance.recipe == number:
+                    records.append(record)
+            return values, what_if(records, thresholds, quality)
+
+        self._work.start(translate("recipe", "scoring the archive again"), work)
+        self._look()
+
+    def _on_done(self, answer: object) -> None:
+        if not isinstance(answer, tuple):
+            return
+        self._asked, found = answer
+        for table, flips in ((self.released, found.released), (self.refused, found.refused)):
+            rows = [(str(f.inspection_id), f.serial, str(f.before), str(f.after), str(f.segment), f"{f.score:.3f}") for f in flips]
+            table.fill(rows)
+        self.said.setText(
+            translate("recipe", "{n} parts: {released} would be released, {refused} refused").format(
+                n=found.looked_at, released=len(found.released), refused=len(found.refused)
+            )
+        )
+        self._look()
+
+    def _save(self) -> None:
+        values, number = self.values(), str(self.recipe.currentData())
+        if values is None:
+            return
+        told = True
+        try:
+            for section in ("model", "quality"):
+                new: dict[str, tuple[object, object]] = {}
+                for key, value in values[0].items():
+                    if FIELDS[key][0] == section and value != float(f"{self._in_use[key]:.6g}"):
+                        new[key] = (self._in_use[key], value)
+                if section == "model" and values[1] != self._segments_in_use:
+                    new["segment_thresholds"] = (self._segments_in_use, values[1])
+                if new:
+                    told = change(self._session, ("recipes", number, section), new, self.reason.text())
+        except (SettingsError, RecordError) as error:
+            self.problem.setText(str(error))
+            return
+        self.reason.clear()
+        self.problem.setText("" if told else translate("recipe", "saved; no engine is there, it is used at the next start"))
+        self.said.setText(translate("recipe", "saved"))
+        self._fill()
+
+    def _on_refused(self) -> None:
+        self.said.setText("")
+        self.problem.setText(translate("recipe", "the station refused the change (see its log), it was taken back"))
+        self._fill()
+
+    def close_page(self) -> None:
+        """Nothing is left running."""
+        self._work.close_work()
+
+
+def _limits(settings: Settings) -> dict[str, float]:
+    """In use: of the settings, else of the model. Raises ModelError."""
+    hole, missing, q = settings.model.hole_threshold, settings.model.missing_threshold, settings.quality
+    if hole is None or missing is None:
+        card = Classifier(settings.model.path, 1).card
+        hole = card.hole_threshold if hole is None else hole
+        missing = card.missing_threshold if missing is None else missing
+    thresholds = {"hole_threshold": hole, "missing_threshold": missing}
+    thresholds |= {"hole_min_mm": settings.model.hole_min_mm, "missing_min_mm": settings.model.missing_min_mm}
+    return thresholds | {key: float(getattr(q, key)) for key, (section, _, _) in FIELDS.items() if section == "quality"}

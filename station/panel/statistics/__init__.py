@@ -1,0 +1,1 @@
+"""Yield, counts and trends."""

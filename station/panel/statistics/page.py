@@ -1,0 +1,157 @@
+"""Yield and counts by shift and recipe, where and what was found, trends with limits, cycle times."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QComboBox, QFileDialog, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from station.archive.reader import Wanted, find, read_records, read_words
+from station.archive.statistics import Summary, summarise
+from station.domain import Verdict
+from station.errors import RecordError
+from station.panel.card import Table, label, titled
+from station.panel.live.clock_face import ClockFace
+from station.panel.session import Session
+from station.panel.statistics.charts import Chart
+from station.panel.words import data, translate
+from station.panel.work import Told, WorkBar
+from station.records import Record
+from station.report.page import report
+
+PARTS = (100, 300, 1000, 5000)
+
+
+class StatisticsPage(QWidget):
+    """Reads the archive when it is looked at, and on demand."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self.summary: Summary | None = None
+        self.groups = Table(
+            (
+                translate("statistics", "shift"),
+                translate("statistics", "recipe"),
+                "OK",
+                "NOK",
+                translate("statistics", "not judged"),
+                translate("statistics", "yield"),
+            ),
+            stretch=0,
+        )
+        self._lay_out()
+        self._work.done.connect(self._on_done)
+        self._work.failed.connect(self._problem.setText)
+        self.how_many.currentIndexChanged.connect(self.read)
+        self._first = QTimer(self)
+        self._first.setInterval(300)
+        self._first.timeout.connect(self._when_seen)
+        self._first.start()
+
+    def _lay_out(self) -> None:
+        self.how_many = QComboBox()
+        last = translate("statistics", "the last")
+        for count in PARTS:
+            self.how_many.addItem(f"{last} {count}", count)
+        self.how_many.setCurrentIndex(1)
+        self.again, self.report = QPushButton(translate("statistics", "Read again")), QPushButton(translate("statistics", "Report…"))
+        self.again.clicked.connect(self.read)
+        self.report.clicked.connect(self._ask_report)
+        self._work, self._problem = WorkBar(), label("", "problem")
+        top = QHBoxLayout()
+        for widget in (self.how_many, self.again, self.report, self._problem):
+            top.addWidget(widget)
+        top.addStretch(1)
+        self.clock = ClockFace()
+        self.reasons = Chart(translate("statistics", "reasons"))
+        self.trends = {
+            "worst": Chart(translate("statistics", "worst score of each part")),
+            "mean_dn": Chart(translate("statistics", "brightness"), translate("statistics", "grey levels")),
+            "sharpness": Chart(translate("statistics", "sharpness")),
+            "novelty": Chart(translate("statistics", "distance to the training images")),
+        }
+        self.cycle = Chart(translate("statistics", "inspection time"), "ms")
+        grid = QGridLayout()
+        grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 4)
+        grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 4, 1, 2)
+        trends = list(self.trends.values())
+        for index, chart in enumerate((*trends[:3], trends[3], self.cycle, self.reasons)):
+            grid.addWidget(chart, 1 + index // 3, index % 3 * 2, 1, 2)
+        for column in range(6):
+            grid.setColumnStretch(column, 1)
+        for row in range(3):
+            grid.setRowStretch(row, 1)
+        rows = QVBoxLayout(self)
+        rows.addLayout(top)
+        rows.addWidget(self._work)
+        rows.addLayout(grid, 1)
+
+    def _when_seen(self) -> None:
+        if self.isVisible():
+            self._first.stop()
+            self.read()
+
+    def read(self) -> None:
+        """Read the records of the chosen parts, beside the window."""
+        folder, limit = self._session.folder, int(self.how_many.currentData())
+        self._work.start(translate("statistics", "reading records"), lambda told: summarise(_records(folder, limit, told)))
+
+    def _on_done(self, summary: object) -> None:
+        if not isinstance(summary, Summary):
+            self._problem.setText(str(summary))
+            return
+        self.summary = summary
+        self._problem.setText("" if summary.points else translate("statistics", "no parts yet"))
+        self.groups.fill([(g.shift, str(g.recipe), str(g.ok), str(g.nok), str(g.error), f"{g.yield_share:.1%}") for g in summary.groups])
+        self.clock.show_counts(summary.segments)
+        self.reasons.show_bars([(data(name), count) for name, count in summary.reasons[:5]])
+        bad = [p.verdict is not Verdict.OK for p in summary.points]
+        s = self._session.settings
+        limits: dict[str, list[float]] = {
+            "worst": list(summary.thresholds),
+            "mean_dn": [s.quality.min_mean_dn],
+            "sharpness": [s.quality.min_sharpness],
+            "novelty": [],
+        }
+        for key, chart in self.trends.items():
+            chart.show_trend([getattr(p, key) for p in summary.points], bad, limits[key])
+        self.cycle.show_histogram([p.cycle_ms for p in summary.points])
+
+    def _ask_report(self) -> None:
+        name, _ = QFileDialog.getSaveFileName(self, translate("statistics", "Report"), "report.html", "HTML (*.html)")
+        if name:
+            self.write_report(Path(name))
+
+    def write_report(self, target: Path) -> None:
+        """The chosen parts as one HTML file."""
+        folder, limit = self._session.folder, int(self.how_many.currentData())
+
+        def work(told: Told) -> str:
+            entries = []
+            for count, entry in enumerate(read_records(folder, Wanted(newest_first=True, limit=limit))):
+                if not told(count, limit):
+                    return ""
+                entries.append(entry)
+            target.write_text(report(entries[::-1], folder, "weldgate"), encoding="utf-8")
+            return str(target)
+
+        self._work.start(translate("statistics", "report"), work)
+
+    def close_page(self) -> None:
+        """Nothing is left running."""
+        self._first.stop()
+        self._work.close_work()
+
+
+def _records(folder: Path, limit: int, told: Told) -> Iterator[Record]:
+    try:
+        rows = find(folder, Wanted(newest_first=True, limit=limit))
+    except RecordError:
+        rows = []
+    for count, row in enumerate(rows):
+        if not told(count, len(rows)):
+            return
+        record, _ = read_words(folder, row)
+        if record is not None:
+            yield record

@@ -1,0 +1,88 @@
+"""Someone works on the station: a lease that must be renewed, and pictures for setting up camera and light."""
+
+import logging
+import time
+
+import numpy as np
+
+from station.camera.reconnecting import ReconnectingCamera
+from station.errors import LocateError, ModelError
+from station.events import LookEvent, Preview
+from station.inspection import Inspector
+from station.plc.registers import Status
+from station.preview import make_preview
+from station.requests import Service
+from station.vision.quality import measure
+from station.vision.unwrap import unwrap
+
+log = logging.getLogger("weldgate.service")
+
+LEASE_S = 3.0
+"""A window that is killed or hangs lets the station go on after this time."""
+CLASSES = 64
+
+
+class ServiceMode:
+    """What the last request said, while it holds."""
+
+    def __init__(self) -> None:
+        self._said: Service | None = None
+        self._until_s = -1e9
+
+    def heard(self, request: Service) -> None:
+        """A request to begin, to go on or to end."""
+        if request.over:
+            self._until_s = -1e9
+        elif not self.who:
+            log.info("service mode: %s works on the station", request.who)
+        self._said = request
+        if not request.over:
+            self._until_s = time.monotonic() + LEASE_S
+
+    def ended(self) -> bool:
+        """Once after it has ended: camera and bits must be as before."""
+        if self._said is None or self.who:
+            return False
+        log.info("service mode is over")
+        self._said = None
+        return True
+
+    @property
+    def who(self) -> str:
+        """Who works on the station, or empty."""
+        return self._said.who if self._said is not None and time.monotonic() < self._until_s else ""
+
+    @property
+    def bit(self) -> int:
+        """The bit of STATUS to set; 0: none."""
+        held = self._said.bit if self._said is not None and self.who else 0
+        return held if held in [int(flag) for flag in Status] else 0
+
+    @property
+    def looking(self) -> Service | None:
+        """What pictures are wanted."""
+        return self._said if self._said is not None and self.who and self._said.look else None
+
+
+def look(camera: ReconnectingCamera, inspector: Inspector, wanted: Service) -> tuple[LookEvent, Preview | None]:
+    """One picture with its numbers."""
+    camera.adjust(wanted.exposure_us, wanted.gain_db)
+    frame, reason, _ = camera.grab()
+    if frame is None:
+        return LookEvent(wanted.exposure_us, wanted.gain_db, 0.0, 0.0, 0.0, (), None, str(reason)), None
+    ring, problem = None, ""
+    try:
+        ring = inspector.locate(frame.image)
+    except (LocateError, ModelError) as error:
+        problem = str(error)
+    shown = frame.image if ring is None else unwrap(frame.image, ring)
+    quality = measure(shown)
+    counts, _ = np.histogram(shown, CLASSES, (0, 256))
+    event = LookEvent(
+        *(wanted.exposure_us, wanted.gain_db),
+        *(quality.mean_dn, quality.saturated_share, quality.sharpness),
+        tuple(int(c) for c in counts),
+        ring,
+        problem,
+    )
+    return event, make_preview(0, frame.image, ring)

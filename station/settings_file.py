@@ -1,0 +1,60 @@
+"""Reads station.toml. Relative paths count from the file's folder."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from station.adjustments import laid_over
+from station.errors import SettingsError
+from station.settings import ReplaySettings, Settings, for_recipe
+
+
+def load(path: Path) -> Settings:
+    """A TOML file with what was changed at the station laid over it. Raises SettingsError naming file, key and what is allowed."""
+    try:
+        with path.open("rb") as file:
+            raw = tomllib.load(file)
+    except FileNotFoundError:
+        raise SettingsError(f"{path}: no such settings file; name one with -c, or copy deploy/station.toml") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{path}: cannot be read: {error}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise SettingsError(f"{path}: not valid TOML: {error}") from None
+    raw = laid_over(raw, path)
+    try:
+        settings = Settings.model_validate(raw)
+        for number in settings.recipes:
+            for_recipe(settings, number)
+    except ValidationError as error:
+        raise SettingsError(f"{path}: {_first(error)}") from None
+    return _anchored(settings, path.resolve().parent)
+
+
+def _first(error: ValidationError) -> str:
+    problems = [f"{'.'.join(str(p) for p in e['loc'] if p not in ('pylon', 'replay'))}: {e['msg']}" for e in error.errors()]
+    return "; ".join(problems)
+
+
+def _under(folder: Path, values: dict[str, Any]) -> dict[str, Path]:
+    return {key: folder / value for key, value in values.items() if key.endswith("_path") or key == "path" if value is not None}
+
+
+def _anchored(settings: Settings, folder: Path) -> Settings:
+    model = settings.model
+    changes: dict[str, Any] = {
+        "model": model.model_copy(update=_under(folder, dict(model))),
+        "recipes": {
+            number: recipe.model_copy(update={"model": {**recipe.model, **_under(folder, recipe.model)}})
+            for number, recipe in settings.recipes.items()
+        },
+        "archive": settings.archive.model_copy(update={"folder": folder / settings.archive.folder}),
+    }
+    tls = settings.plc.tls
+    if tls is not None:
+        anchored = tls.model_copy(update={key: folder / path for key, path in tls})
+        changes["plc"] = settings.plc.model_copy(update={"tls": anchored})
+    if isinstance(settings.camera, ReplaySettings):
+        changes["camera"] = settings.camera.model_copy(update={"folder": folder / settings.camera.folder})
+    return settings.model_copy(update=changes)

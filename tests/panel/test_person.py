@@ -1,0 +1,235 @@
+"""A person at a running station: parts pass, a NOK is found in the history and reviewed, a threshold is changed, somebody logs out."""
+
+import asyncio
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from deploy.demo import free_ports, running, shipped_parts, station_toml
+from station import adjustments
+from station.archive.journal import Kind, entries
+from station.archive.review import Opinion, State, reviews
+from station.imagefile import read_image
+from station.panel import theme, words
+from station.panel.app import open_window
+from station.panel.history.page import HistoryPage
+from station.panel.setup.page import SetupPage
+from station.panel.window import Window
+from station.plc.registers import VerdictCode
+from station.plc.simulated.line import Answer, SimulatedLine
+from station.users import Level, save_user
+from synth.feed import Feed
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+class Line:
+    """Parts pass through the engine, in a thread of their own."""
+
+    def __init__(self, feed: Feed, port: int) -> None:
+        self._feed, self._port = feed, port
+        self.answers: list[Answer] = []
+
+    def passes(self, qtbot: QtBot, count: int) -> list[Answer]:
+        """Until `count` parts are answered; the window lives meanwhile."""
+        self.answers = []
+        thread = threading.Thread(target=lambda: asyncio.run(self._drive(count)))
+        thread.start()
+        qtbot.waitUntil(lambda: not thread.is_alive(), timeout=60_000)
+        thread.join()
+        return self.answers
+
+    async def _drive(self, count: int) -> None:
+        line, parts = SimulatedLine.at("127.0.0.1", self._port, accept_simulated=True), shipped_parts()
+        await line.connect()
+        for number in range(count):
+            self._feed.show(read_image(parts[number % len(parts)].path))
+            self.answers.append(await line.inspect(f"CELL-{number}"))
+        await line.close()
+
+
+@pytest.fixture
+def station(tmp_path: Path) -> Iterator[tuple[Path, Line]]:
+    feed, ports = Feed(tmp_path / "feed"), free_ports(4)
+    path = tmp_path / "station.toml"
+    path.write_text(station_toml(tmp_path / "records", *ports))
+    with (
+        (tmp_path / "engine.log").open("w") as log,
+        running([sys.executable, "-m", "station", "engine", "-c", str(path)], {**os.environ, **feed.environment}, log),
+    ):
+        yield path, Line(feed, ports[0])
+
+
+@pytest.fixture
+def window(station: tuple[Path, Line], qtbot: QtBot) -> Iterator[Window]:
+    shown = open_window(station[0])
+    qtbot.addWidget(shown)
+    shown.show()
+    qtbot.waitUntil(lambda: shown.session.engine_there, timeout=60_000)
+    yield shown
+    shown.close()
+    words.use("en")
+    theme.use("dark")
+
+
+def log_in(window: Window, qtbot: QtBot, name: str, pin: str) -> SetupPage:
+    """On the page Setup, by keys."""
+    window.go(5)
+    setup = window.page
+    assert isinstance(setup, SetupPage)
+    setup.show_tab(setup.login)
+    setup.login.name.setEditText(name)
+    setup.login.pin.clear()
+    qtbot.keyClicks(setup.login.pin, pin)
+    qtbot.mouseClick(setup.login.log_in, LEFT)
+    return setup
+
+
+def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
+    path, line = station
+    session, folder = window.session, window.session.folder
+    answers = line.passes(qtbot, 4)
+    nok = [a for a in answers if a.verdict is VerdictCode.NOK]
+    ok = [a for a in answers if a.verdict is VerdictCode.OK]
+    assert nok
+    assert ok
+    qtbot.waitUntil(lambda: len(session.parts) == 4, timeout=5000)
+
+    # the first to log in becomes administrator, and makes the other users
+    log_in(window, qtbot, "Ada", "1234")
+    assert session.user is not None
+    assert session.user.level is Level.ADMIN
+    save_user(folder, "Ada", "Quentin", Level.QUALITY, "2345")
+
+    # find a NOK, look at it, review it, the second person too
+    window.go(1)
+    history = window.page
+    assert isinstance(history, HistoryPage)
+    history.verdict.setCurrentText("NOK")
+    assert history.film.count() == len(nok)
+    history.film.setCurrentRow(0)
+    number = history.film.chosen()
+    assert number == nok[-1].inspection_id
+    assert history.record.record is not None
+    assert history.record.findings.rowCount() >= 1
+    assert history.record.weld.drawn is not None
+    qtbot.mouseClick(history.opinions[Opinion.FALSE_CALL], LEFT)
+    assert reviews(folder)[number].state is State.ONE
+    assert not history.opinions[Opinion.MISSED].isEnabled(), "a NOK part cannot have been missed"
+
+    # change a threshold: what if first, then a reason
+    setup = log_in(window, qtbot, "Quentin", "2345")
+    give_second = history.opinions[Opinion.FALSE_CALL]
+    give_second.click()
+    assert reviews(folder)[number].agreed is Opinion.FALSE_CALL
+    setup.show_tab(setup.recipe)
+    recipe = setup.recipe
+    recipe.fields["hole_min_mm"].edit.setText("99")
+    assert recipe.fields["hole_min_mm"].problem == "allowed: 0 … 5"
+    assert not recipe.ask.isEnabled()
+    recipe.fields["hole_min_mm"].edit.setText("1.5")
+    assert not recipe.save.isEnabled(), "nobody asked what if"
+    qtbot.mouseClick(recipe.ask, LEFT)
+    qtbot.waitUntil(lambda: bool(recipe.said.text()), timeout=10_000)
+    released = [int(row[0]) for row in recipe.released.texts()]
+    assert recipe.refused.rowCount() == 0
+    assert released
+    assert set(released) < {a.inspection_id for a in nok}, "holes are tolerated, missing welds are not"
+    assert not recipe.save.isEnabled(), "a reason is needed"
+    qtbot.keyClicks(recipe.reason, "trial of the least length")
+    crc = session.status.config_crc if session.status else 0
+    qtbot.mouseClick(recipe.save, LEFT)
+    qtbot.waitUntil(lambda: session.status is not None and session.status.config_crc != crc, timeout=20_000)
+    assert adjustments.read(path) == {"recipes": {"1": {"model": {"hole_min_mm": 1.5}}}}
+    (change,) = entries(folder, (Kind.SETTING,))
+    assert (change.who, change.subject, change.after) == ("Quentin", "recipes.1.model.hole_min_mm", "1.5")
+    assert change.reason == "trial of the least length"
+    again = line.passes(qtbot, 4)
+    assert sum(a.verdict is VerdictCode.OK for a in again) == len(ok) + len(released), "as what if had said"
+
+    # log out
+    setup.show_tab(setup.login)
+    qtbot.mouseClick(setup.login.log_out, LEFT)
+    assert session.user is None
+    assert not recipe.save.isEnabled()
+    assert next(e.kind for e in entries(folder, (Kind.LOGIN, Kind.LOGOUT))) is Kind.LOGOUT
+
+
+def test_limits_that_the_station_refuses_are_taken_back(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
+    """Its stored frame would be too blurred for them: the station would not come up again."""
+    path, line = station
+    line.passes(qtbot, 1)
+    recipe = log_in(window, qtbot, "Ada", "1234").recipe
+    recipe.fields["min_sharpness"].edit.setText("5")
+    recipe.reason.setText("trial of the sharpness limit")
+    qtbot.mouseClick(recipe.ask, LEFT)
+    qtbot.waitUntil(recipe.save.isEnabled, timeout=10_000)
+    qtbot.mouseClick(recipe.save, LEFT)
+    qtbot.waitUntil(lambda: "taken back" in recipe.problem.text(), timeout=20_000)
+    assert adjustments.read(path) == {}
+    told = entries(window.session.folder, (Kind.SETTING,))
+    assert [(e.before, e.after, e.reason) for e in told] == [
+        ("5", "0.01", "refused by the station"),
+        ("0.01", "5", "trial of the sharpness limit"),
+    ]
+    assert recipe.fields["min_sharpness"].value == 0.01
+    qtbot.waitUntil(lambda: window.session.status is not None and not window.session.status.alarms, timeout=20_000)
+
+
+def test_a_record_whose_picture_is_gone_is_shown_as_such(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
+    _, line = station
+    line.passes(qtbot, 1)
+    next(window.session.folder.glob("????-??-??/*.png")).unlink()
+    window.go(1)
+    history = window.page
+    assert isinstance(history, HistoryPage)
+    history.search()
+    history.film.setCurrentRow(0)
+    history._on_chosen()
+    assert history.record.weld.drawn is None
+    assert "no longer kept" in history.record.weld._note
+    assert "cannot be read" in history.record.problem.text()
+    assert history.record.strip._scores
+
+
+def test_five_wrong_pins_are_said_and_a_level_holds(window: Window, qtbot: QtBot) -> None:
+    folder = window.session.folder
+    save_user(folder, "Ada", "Ada", Level.ADMIN, "1234")
+    save_user(folder, "Ada", "Sam", Level.SETTER, "3456")
+    for _ in range(5):
+        setup = log_in(window, qtbot, "Sam", "0000")
+        assert setup.login.problem.text() == "unknown name or wrong PIN"
+    setup = log_in(window, qtbot, "Sam", "3456")
+    assert "locked for a minute" in setup.login.problem.text()
+    assert window.session.user is None
+    assert not setup.people.save.isEnabled()
+    assert not setup.camera.live.isEnabled()
+    log_in(window, qtbot, "Ada", "1234")
+    assert setup.people.save.isEnabled()
+
+
+def test_service_mode_from_the_line_page_is_told_to_the_plc_and_ends_with_the_login(window: Window, qtbot: QtBot) -> None:
+    session = window.session
+    log_in(window, qtbot, "Ada", "1234")
+    window.go(3)
+    page = window.page
+    qtbot.mouseClick(page.service, LEFT)  # type: ignore[attr-defined]
+    qtbot.waitUntil(lambda: session.status is not None and session.status.service == "Ada", timeout=10_000)
+    session.log_out("asked to")
+    qtbot.waitUntil(lambda: session.status is not None and not session.status.service, timeout=10_000)
+
+
+def test_nobody_stays_logged_in_for_ever(window: Window, qtbot: QtBot) -> None:
+    session = window.session
+    session.settings = session.settings.model_copy(
+        update={"panel": session.settings.panel.model_copy(update={"logout_min": 0.005})}  # 0.3 s
+    )
+    log_in(window, qtbot, "Ada", "1234")
+    assert session.user is not None
+    qtbot.waitUntil(lambda: session.user is None, timeout=5000)

@@ -1,0 +1,162 @@
+"""Opinions, other limits, statistics, the station's condition: pure laws."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from station.archive.export import export
+from station.archive.reader import read_records
+from station.archive.review import Opinion, Review, State, give, possible, reviews
+from station.archive.room import Room
+from station.archive.statistics import shift_of, summarise
+from station.archive.whatif import what_if
+from station.archive.writer import Archive
+from station.classify.decision import Thresholds
+from station.condition import Seen, alarms, health
+from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Reason, Verdict
+from station.plc.alarms import Alarm
+from station.plc.registers import Offline
+from station.records import Part, Record
+from station.settings import ArchiveSettings, QualitySettings
+from tests.parts import label_with, nok_inspection, ok_inspection, provenance, record
+
+OPINIONS = st.dictionaries(st.sampled_from(["Ada", "Bob", "Cy"]), st.sampled_from(list(Opinion)))
+NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
+
+
+@given(OPINIONS)
+def test_an_opinion_counts_once_two_share_it_and_nobody_differs(opinions: dict[str, Opinion]) -> None:
+    review = Review(opinions)
+    assert (review.agreed is not None) == (len(opinions) >= 2 and len(set(opinions.values())) == 1)
+    assert (review.state is State.DISPUTED) == (len(set(opinions.values())) > 1)
+
+
+def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(tmp_path: Path, frames: dict[str, Image]) -> None:
+    folder = tmp_path / "records"
+    archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
+    image = frames[label_with("hole")["frame"]]
+    for number, inspection in enumerate([nok_inspection(), nok_inspection(), ok_inspection(), nok_inspection()]):
+        frame = Frame(image, NOON + timedelta(minutes=number), "cam", Origin.SIMULATED)
+        archive.commit(archive.begin(frame), inspection, Part(f"C{number}", number + 1, Origin.SIMULATED), provenance(), frame.grabbed_at)
+    archive.close()
+    before = {path: path.read_bytes() for path in folder.rglob("*.json")}
+    for who in ("Ada", "Bob"):
+        give(folder, who, 1, "NOK", Opinion.RIGHT)
+        give(folder, who, 2, "NOK", Opinion.FALSE_CALL, "soot")
+        give(folder, who, 3, "OK", Opinion.MISSED)
+    give(folder, "Ada", 4, "NOK", Opinion.FALSE_CALL)
+    with pytest.raises(ValueError, match="cannot be said of ERROR"):
+        give(folder, "Ada", 5, "ERROR", Opinion.RIGHT)
+    assert [reviews(folder)[n].state for n in (1, 2, 3, 4)] == [State.AGREED] * 3 + [State.ONE]
+    assert {path: path.read_bytes() for path in folder.rglob("*.json")} == before
+    problems = list(export(read_records(folder), folder, tmp_path / "out", "reviewed"))
+    assert [said for _, said in problems] == ["a defect was missed: nobody said in which segment, its crops are left out"]
+    crops = {name: sorted(p.name for p in (tmp_path / "out" / name).iterdir()) for name in ("ok", "hole", "missing_weld")}
+    assert crops["hole"] == ["00000001_04.png"]
+    assert len(crops["ok"]) == 2 * SEGMENTS - 1
+    assert possible("ERROR") == ()
+
+
+SCORES = st.floats(0, 1).flatmap(lambda a: st.floats(0, 1 - a).map(lambda b: (1 - a - b, a, b)))
+
+
+def judged(scores: list[tuple[float, float, float]], number: int = 1) -> Record:
+    """A record that was decided by its own limits, 0.5 and 0.5."""
+    from station.classify.decision import segment_kind
+    from station.domain import SegmentScores
+
+    made = tuple(SegmentScores(*s) for s in scores)
+    bad = any(segment_kind(s, Thresholds(0.5, 0.5)) for s in made)
+    verdict, reason = (Verdict.NOK, Reason.HOLE) if bad else (Verdict.OK, None)
+    return record(replace(ok_inspection(), verdict=verdict, reason=reason, scores=made), number)
+
+
+@given(st.lists(SCORES, min_size=SEGMENTS, max_size=SEGMENTS), st.floats(0.01, 0.99), st.floats(0.01, 0.99))
+def test_what_if_with_the_same_limits_changes_nothing_and_stricter_ones_release_nothing(
+    scores: list[tuple[float, float, float]], hole: float, missing: float
+) -> None:
+    part = judged(scores)
+    same = what_if([part], Thresholds(0.5, 0.5), QualitySettings())
+    assert (same.released, same.refused) == ((), ())
+    asked = what_if([part], Thresholds(hole, missing), QualitySettings())
+    if hole <= 0.5 and missing <= 0.5:
+        assert asked.released == ()
+    if hole >= 0.5 and missing >= 0.5:
+        assert asked.refused == ()
+    assert asked.looked_at == 1
+
+
+def test_what_if_counts_parts_alone_and_says_what_nobody_knows() -> None:
+    dark = replace(ok_inspection(), verdict=Verdict.ERROR, reason=Reason.TOO_DARK, scores=())
+    parts = [
+        record(ok_inspection(), 1),
+        record(nok_inspection(), 2),
+        replace(record(nok_inspection(), 3), purpose=Purpose.TEST),
+        record(dark, 4),
+    ]
+    found = what_if(parts, Thresholds(0.95, 0.95), QualitySettings(min_sharpness=0.0))
+    assert (found.looked_at, found.unknown) == (2, 1)
+    assert [(f.inspection_id, f.before, f.after, f.segment) for f in found.released] == []
+    sharper = what_if(parts, Thresholds(0.5, 0.5), QualitySettings(min_sharpness=9.0))
+    assert [(f.inspection_id, f.after) for f in sharper.refused] == [(1, Verdict.ERROR)]
+
+
+@pytest.mark.parametrize(
+    ("when", "shift"),
+    [
+        (datetime(2026, 11, 22, 6, 0), "2026-11-22 / 1"),
+        (datetime(2026, 11, 22, 13, 59), "2026-11-22 / 1"),
+        (datetime(2026, 11, 22, 14, 0), "2026-11-22 / 2"),
+        (datetime(2026, 11, 22, 23, 0), "2026-11-22 / 3"),
+        (datetime(2026, 11, 23, 5, 59), "2026-11-22 / 3"),
+    ],
+)
+def test_the_night_shift_runs_over_midnight(when: datetime, shift: str) -> None:
+    assert shift_of(when) == shift
+
+
+def test_statistics_count_parts_by_shift_recipe_reason_and_segment() -> None:
+    parts = [record(i, n) for n, i in enumerate([ok_inspection(), nok_inspection(), Inspection.error(Reason.NO_FRAME)], 1)]
+    parts.append(replace(record(nok_inspection(), 4), purpose=Purpose.GOLDEN))
+    summary = summarise(reversed(parts))
+    (group,) = summary.groups
+    assert (group.recipe, group.ok, group.nok, group.error) == (1, 1, 1, 1)
+    assert group.yield_share == pytest.approx(1 / 3)
+    assert dict(summary.reasons) == {"hole": 1, "no frame in time": 1}
+    assert [i for i, count in enumerate(summary.segments) if count] == [3]
+    assert [p.number for p in summary.points] == [1, 2, 3]
+    assert summary.points[0].cycle_ms == 54.0
+    assert summary.thresholds == (0.5, 0.5)
+
+
+BOOLS = st.booleans()
+SEEN = st.builds(
+    Seen,
+    camera_there=BOOLS,
+    can_write=BOOLS,
+    room=st.sampled_from(list(Room)),
+    plc_silent=BOOLS,
+    self_test_failed=BOOLS,
+    master_wrong=BOOLS,
+    masters_due=BOOLS,
+    drifting=BOOLS,
+    settings_refused=BOOLS,
+    service=st.sampled_from(["", "Ada"]),
+    bit=st.just(0),
+    recipe=st.just(1),
+    config_crc=st.just(7),
+)
+
+
+@given(SEEN)
+def test_the_station_is_ready_only_if_nothing_keeps_it_and_everything_that_lasts_is_an_alarm(seen: Seen) -> None:
+    told, lasting = health(seen), alarms(seen)
+    assert told.ready == (told.offline is Offline.NONE)
+    assert told.ready == (seen.camera_there and seen.can_write and not seen.self_test_failed and not seen.service)
+    assert told.failure == any(a in lasting for a in (Alarm.CAMERA_LOST, Alarm.ARCHIVE_FULL, Alarm.SELF_TEST_FAILED))
+    assert told.function_check == (Alarm.MASTER_WRONG in lasting or Alarm.MASTERS_DUE in lasting)
+    assert told.alarm == (int(lasting[0]) if lasting else 0)

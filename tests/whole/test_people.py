@@ -1,0 +1,201 @@
+"""What people do at a running station: service mode, setting-up pictures, masters, changed settings; the PLC is told."""
+
+import asyncio
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from deploy.demo import free_ports
+from station import adjustments
+from station.alarmlog import AlarmLog
+from station.archive.journal import Kind, entries
+from station.archive.reader import find
+from station.archive.writer import Archive
+from station.domain import Image
+from station.events import Event, LookEvent, StatusEvent
+from station.listener import Listener
+from station.plc.alarms import Alarm
+from station.plc.line import make_line
+from station.plc.registers import Offline, Status, VerdictCode
+from station.plc.simulated.line import Answer, SimulatedLine
+from station.recipe import prepare
+from station.requests import Reload, Request, Service, TestPicture
+from station.settings_file import load
+from station.startup import make_cycle
+from synth.feed import Feed
+from tests.conftest import MODEL, RING_MODEL
+from tests.parts import label_with
+
+
+class Running:
+    """An engine in threads of this process, by a settings file."""
+
+    def __init__(self, path: Path, feed: Feed) -> None:
+        self.path, self.feed, self.settings = path, feed, load(path)
+        self.events: list[Event] = []
+        self._asked: list[Request] = []
+        self._archive, self._line = Archive(self.settings.archive), make_line(self.settings.plc)
+        self._alarm_log, self._stop = AlarmLog(self.settings.archive.folder), threading.Event()
+        listener = Listener(self.events.append, lambda _: None, self._requests)
+        loaded = prepare(self.settings, 1)
+        cycle = make_cycle(self.settings, loaded, self._line, self._archive, listener, self._alarm_log, lambda: load(path))
+        self._line.start()
+        self._thread = threading.Thread(target=cycle.run, args=(self._stop,))
+        self._thread.start()
+
+    def _requests(self) -> list[Request]:
+        taken = self._asked.copy()
+        del self._asked[: len(taken)]
+        return taken
+
+    def ask(self, request: Request) -> None:
+        self._asked.append(request)
+
+    def until(self, said: Callable[[StatusEvent], bool], again: Request | None = None) -> StatusEvent:
+        """The first status that says so."""
+        end, start = time.monotonic() + 20, len(self.events)
+        while time.monotonic() < end:
+            for event in self.events[start:]:
+                if isinstance(event, StatusEvent) and said(event):
+                    return event
+            if again is not None:
+                self.ask(again)
+            time.sleep(0.1)
+        raise AssertionError("never said")
+
+    def part(self, serial: str, image: Image, golden: bool = False) -> Answer:
+        """Pass one part."""
+
+        async def drive() -> Answer:
+            line = SimulatedLine.at("127.0.0.1", self._line.port, accept_simulated=True)
+            await line.connect()
+            self.feed.show(image)
+            try:
+                return await line.inspect(serial, golden=golden)
+            finally:
+                await line.close()
+
+        return asyncio.run(drive())
+
+    def close(self) -> None:
+        self._stop.set()
+        self._thread.join(timeout=10)
+        self._line.stop()
+        self._alarm_log.close()
+        self._archive.close()
+
+
+@pytest.fixture
+def running(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Running]:
+    feed = Feed(tmp_path / "feed")
+    for name, value in feed.environment.items():
+        monkeypatch.setenv(name, value)
+    path = tmp_path / "station.toml"
+    path.write_text(f"""
+[camera]
+kind = "pylon"
+device_class = "BaslerCamEmu"
+serial = "0815-0000"
+reconnect_s = 0.1
+[model]
+path = "{MODEL}"
+ring_path = "{RING_MODEL}"
+[archive]
+folder = "records"
+min_free_mb = 1
+thin_free_mb = 1
+warn_free_mb = 1
+[plc]
+port = {free_ports(1)[0]}
+deadline_ms = 5000
+plc_heartbeat_ms = 0
+[golden]
+due_h = 24
+[golden.masters]
+"MASTER-OK" = "OK"
+""")
+    station = Running(path, feed)
+    yield station
+    station.close()
+
+
+def enable(running: Running) -> None:
+    running.until(lambda e: e.camera_there)
+
+
+def test_service_mode_holds_ready_at_0_tells_the_plc_and_ends_with_its_lease(running: Running, frames: dict[str, Image]) -> None:
+    good = frames[label_with("OK")["frame"]]
+    assert running.part("ONE", good).verdict is VerdictCode.OK
+    service = Service(time.time(), "Ada", bit=int(Status.NOK))
+
+    async def drive() -> tuple[dict[str, object], dict[str, object], bool]:
+        line = SimulatedLine.at("127.0.0.1", running._line.port, accept_simulated=True)
+        await line.connect()
+
+        async def keep() -> None:
+            for _ in range(15):
+                running.ask(service)
+                await asyncio.sleep(0.1)
+
+        await line.meanwhile(keep())
+        during = dict(line.status())
+        running.ask(replace(service, bit=0))
+        await line.meanwhile(asyncio.sleep(0.6))
+        without = dict(line.status())
+        ready = await line.wait_ready(10.0)  # nobody renews the lease
+        await line.close()
+        return during, without, ready
+
+    during, without, ready = asyncio.run(drive())
+    assert (during["STATUS"], during["MODE"], during["OFFLINE_REASON"]) == (int(Status.NOK), 3, int(Offline.SERVICE))
+    assert not int(str(without["STATUS"])) & (Status.READY | Status.NOK | Status.RESULT_VALID)
+    assert ready
+    assert running.part("TWO", good).verdict is VerdictCode.OK
+
+
+def test_setting_up_pictures_have_numbers_and_leave_no_record(running: Running, frames: dict[str, Image]) -> None:
+    running.feed.show(frames[label_with("OK")["frame"]])
+    enable(running)
+    running.until(
+        lambda _: any(isinstance(e, LookEvent) for e in running.events), Service(time.time(), "Ada", look=True, exposure_us=900.0)
+    )
+    seen = next(e for e in running.events if isinstance(e, LookEvent))
+    assert seen.exposure_us == 900.0
+    assert seen.ring is not None
+    assert sum(seen.histogram) == 2688 * 128
+    assert 20 < seen.mean_dn < 200
+    assert not find(running.settings.archive.folder)
+    running.feed.withdraw()
+    running.until(lambda _: any(isinstance(e, LookEvent) and e.problem for e in running.events), Service(time.time(), "Ada", look=True))
+
+
+def test_a_master_that_is_due_is_told_and_judged_from_the_window(running: Running, frames: dict[str, Image]) -> None:
+    status = running.until(lambda e: e.camera_there)
+    assert Alarm.MASTERS_DUE in status.alarms
+    running.feed.show(frames[label_with("OK")["frame"]])
+    running.ask(TestPicture(time.time(), master="MASTER-OK"))
+    running.until(lambda e: Alarm.MASTERS_DUE not in e.alarms)
+    assert [(row.purpose, row.serial, row.verdict) for row in find(running.settings.archive.folder)] == [("golden", "MASTER-OK", "OK")]
+    told = [(e.kind, e.subject) for e in entries(running.settings.archive.folder, (Kind.ALARM, Kind.ALARM_OVER), newest_first=False)]
+    assert (Kind.ALARM_OVER, f"16#{Alarm.MASTERS_DUE:04X}") in told
+
+
+def test_changed_settings_are_used_at_once_and_refused_ones_are_an_alarm(running: Running, frames: dict[str, Image]) -> None:
+    good = frames[label_with("OK")["frame"]]
+    before = running.until(lambda e: e.camera_there)
+    adjustments.write(running.path, {"recipes": {"1": {"model": {"hole_threshold": 0.0001}}}, "camera": {"exposure_us": 1500.0}})
+    running.ask(Reload(time.time()))
+    running.until(lambda e: e.camera_there and e.config_crc != before.config_crc)
+    assert running.part("STRICT", good).verdict is VerdictCode.NOK
+    adjustments.write(running.path, {"recipes": {"1": {"model": {"hole_threshold": 7}}}})
+    running.ask(Reload(time.time()))
+    running.until(lambda e: Alarm.SETTINGS_REFUSED in e.alarms)
+    assert running.part("STILL STRICT", good).verdict is VerdictCode.NOK
+    adjustments.write(running.path, {})
+    running.ask(Reload(time.time()))
+    running.until(lambda e: Alarm.SETTINGS_REFUSED not in e.alarms and e.config_crc == before.config_crc)
+    assert running.part("AS BEFORE", good).verdict is VerdictCode.OK
