@@ -3,6 +3,7 @@
 import argparse
 import asyncio
 import logging
+import os
 import signal
 import subprocess
 import sys
@@ -14,6 +15,8 @@ from station.errors import WeldgateError
 from station.records_command import add_commands
 
 SETTINGS = Path("station.toml")
+WINDOW_NICENESS = 15
+"""The window, also while it opens, takes the time that the engine leaves."""
 SHIPPED = Path(__file__).resolve().parent.parent / "models" / "shipped"
 """The networks that come with the station."""
 
@@ -92,6 +95,8 @@ def _engine(arguments: argparse.Namespace) -> int:
 
 
 def _panel(arguments: argparse.Namespace) -> int:
+    if hasattr(os, "nice"):
+        os.nice(WINDOW_NICENESS)
     from station.panel.app import run_panel
 
     return run_panel(arguments.settings)

@@ -3,7 +3,7 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from station.errors import SettingsError
 
@@ -24,9 +24,29 @@ def read(settings: Path) -> dict[str, Any]:
         return {}
     except (OSError, ValueError) as error:
         raise SettingsError(f"{path}: cannot be read ({error}); restore it, or remove it to go back to the settings file") from None
-    if not isinstance(found, dict) or not all(isinstance(part, dict) for part in found.values()):
+    if not _is_ours(found):
         raise SettingsError(f"{path}: is not what the station writes; remove it to go back to the settings file")
     return found
+
+
+def _is_ours(found: object) -> TypeGuard[dict[str, Any]]:
+    if not isinstance(found, dict) or not set(found) <= {"camera", "recipes"}:
+        return False
+    recipes = found.get("recipes", {})
+    if not isinstance(found.get("camera", {}), dict) or not isinstance(recipes, dict):
+        return False
+    sections = [section for recipe in recipes.values() for section in (recipe.items() if isinstance(recipe, dict) else [(None, None)])]
+    return all(name in SECTIONS and isinstance(values, dict) for name, values in sections)
+
+
+def words(settings: Path) -> list[str]:
+    """What was changed, one line a value, as model.hole_threshold = 0.5 (recipe 1). Raises SettingsError."""
+    found = read(settings)
+    lines = [f"camera.{key} = {value}" for key, value in found.get("camera", {}).items()]
+    for number, sections in found.get("recipes", {}).items():
+        for section, values in sections.items():
+            lines += [f"{section}.{key} = {value} (recipe {number})" for key, value in values.items()]
+    return lines
 
 
 def laid_over(raw: dict[str, Any], settings: Path) -> dict[str, Any]:
@@ -54,5 +74,9 @@ def write(settings: Path, changes: dict[str, Any]) -> None:
             file.flush()
             os.fsync(file.fileno())
         part.replace(path)
+        if os.name == "posix":
+            folder = os.open(path.parent, os.O_RDONLY)
+            os.fsync(folder)
+            os.close(folder)
     except OSError as error:
         raise SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None

@@ -23,6 +23,8 @@ class Seen:
     settings_refused: bool
     service: str
     """Who works on the station, or empty."""
+    attended: bool
+    """Somebody asked for a picture or for other settings: it is done once no part is in work."""
     bit: int
     recipe: int
     config_crc: int
@@ -56,6 +58,8 @@ def health(seen: Seen) -> Health:
     failed = offline is not Offline.NONE
     if seen.service:
         offline = Offline.SERVICE
+    elif seen.attended and not failed:
+        offline = Offline.ATTENDED
     lasting = alarms(seen)
     return Health(
         ready=offline is Offline.NONE,

@@ -14,7 +14,6 @@ from functools import partial
 from station.alarmlog import AlarmLog
 from station.answer import answer
 from station.archive.writer import Archive, Pending
-from station.camera.port import Camera
 from station.camera.reconnecting import ReconnectingCamera
 from station.condition import Seen, alarms, health
 from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing, Verdict
@@ -23,12 +22,13 @@ from station.events import Counts, PartEvent, StatusEvent
 from station.listener import Listener
 from station.plc.handshake import ERROR_DEADLINE
 from station.plc.port import Command, Health, Line, Trigger
-from station.plc.registers import STATUS_START, Offline, word
+from station.plc.registers import STATUS_START, Offline, Status, word
 from station.preview import make_preview
 from station.recipe import Loaded
 from station.records import Part, Record
+from station.released import Released
 from station.requests import Reload, Service
-from station.service import ServiceMode, look
+from station.service import Attention, drained, look
 from station.watch import Watch
 
 log = logging.getLogger("weldgate.cycle")
@@ -47,22 +47,21 @@ class Cycle:
         line: Line,
         archive: Archive,
         loaded: Loaded,
-        prepare: Callable[[int], Loaded],
-        new_camera: Callable[[], Camera | None],
+        released: Released,
         watch: Watch,
         listener: Listener,
         alarm_log: AlarmLog,
     ) -> None:
-        """`prepare` and `new_camera` (if it has changed) go by the settings as they are then. Both raise WeldgateError."""
+        """`released`: settings in use."""
         self._camera = camera
         self._origin = origin
         self._line = line
         self._archive = archive
         self._loaded = loaded
-        self._prepare, self._new_camera = prepare, new_camera
+        self._released = released
         self._watch = watch
         self._listener, self._alarm_log = listener, alarm_log
-        self._service = ServiceMode()
+        self._attention = Attention()
         self._settings_refused = False
         self._status_s = 0.0
         self._counts = Counts()
@@ -72,6 +71,7 @@ class Cycle:
         try:
             while not stop.is_set():
                 self._camera.look_after()
+                self._attention.hear(self._listener.requests())
                 self._line.checked_in(self._health())
                 self._tell_status()
                 request = self._line.next_request(IDLE_S)
@@ -85,51 +85,46 @@ class Cycle:
             self._camera.close()
 
     def _attend(self) -> bool:
-        """What people ask for. Whether there was anything to do."""
-        requests = self._listener.requests()
-        for request in requests:
-            if isinstance(request, Service):
-                self._service.heard(request)
-            elif isinstance(request, Reload):
-                self._guarded(self._reload, "the settings were not read again")
-            else:
-                self._guarded(partial(self._test_picture, request.master), "the test picture was not judged")
-        if self._service.ended():
-            self._camera.adjust(None, None)
-        wanted = self._service.looking
-        if wanted is not None:
-            event, preview = look(self._camera, self._loaded.inspector, wanted)
-            self._listener.event(event)
-            if preview is not None:
-                self._listener.preview(preview)
-        return bool(requests) or wanted is not None
+        """What people ask for, once no part is in work. Whether there was anything to do."""
+        status = Status(word(STATUS_START, self._line.windows()[1], "STATUS"))
+        task, wanted = self._attention.due(status), self._attention.service.looking
+        if isinstance(task, Reload):
+            self._guarded(self._reload, "the settings were not read again")
+        elif task is not None:
+            self._guarded(partial(self._test_picture, task.master), "the test picture was not judged")
+        elif wanted is not None and drained(status):
+            self._guarded(partial(self._look, wanted), "no picture for setting up")
+        return task is not None or wanted is not None
+
+    def _look(self, wanted: Service) -> None:
+        event, preview = look(self._camera, self._loaded.inspector, wanted)
+        self._listener.event(event)
+        if preview is not None:
+            self._listener.preview(preview)
 
     def _reload(self) -> None:
         """Use the settings as they are now; if they are no good, those before stay in use."""
-        self._line.checked_in(replace(self._health(), ready=False, offline=Offline.PREPARING))
-        loaded = self._loaded_anew(self._loaded.number)
-        self._settings_refused = loaded is None
-        if loaded is None:
-            return
-        camera = self._new_camera()
-        if camera is not None:
-            self._camera.exchange(camera)
-        self._use(loaded)
-
-    def _loaded_anew(self, number: int) -> Loaded | None:
+        self._settings_refused = True
         try:
-            return self._prepare(number)
+            change = self._released.changed(self._loaded.number)
         except WeldgateError as error:
-            log.error("recipe %d was not loaded: %s", number, error)
-        except Exception:  # the recipe before is still in use
-            log.exception("recipe %d was not loaded", number)
-        return None
+            log.error("changed settings are not used: %s", error)
+            return
+        if change.camera is None or self._camera.exchange(change.camera):
+            self._settings_refused = False
+            self._released.accept(change)
+            self._use(change.loaded)
 
     def _load_recipe(self, command: Command) -> bool:
         """Whether the recipe is in use now; if not, the one before still is."""
         number = command.arg
-        loaded = self._loaded_anew(number)
-        if loaded is None:
+        try:
+            loaded = self._released.prepare(number)
+        except WeldgateError as error:
+            log.error("recipe %d was not loaded: %s", number, error)
+            return False
+        except Exception:  # the recipe before is still in use
+            log.exception("recipe %d was not loaded", number)
             return False
         if not self._line.wanted(command):
             log.error("recipe %d was loaded too late, the one before stays in use", number)
@@ -155,8 +150,9 @@ class Cycle:
             masters_due=watch.masters_due,
             drifting=watch.drifting,
             settings_refused=self._settings_refused,
-            service=self._service.who,
-            bit=self._service.bit,
+            service=self._attention.service.who,
+            attended=self._attention.waiting,
+            bit=self._attention.service.bit,
             recipe=self._loaded.provenance.recipe,
             config_crc=self._loaded.provenance.config_crc,
         )
@@ -203,7 +199,8 @@ class Cycle:
             inspection = self._judge(frame, inspection.timing)
         start = time.perf_counter()
         purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
-        record = self._record(Part(trigger.serial, trigger.trigger_id, self._origin, purpose), pending, inspection)
+        origin = self._origin if frame is None else frame.origin
+        record = self._record(Part(trigger.serial, trigger.trigger_id, origin, purpose), pending, inspection)
         record_ms = (time.perf_counter() - start) * 1000
         self._watch.part(record.inspection)
         if trigger.golden:
@@ -217,7 +214,8 @@ class Cycle:
         if not trigger.golden:
             self._count(record.verdict if shown else Verdict.ERROR)
         if result.error_code or not shown:
-            code = result.error_code if shown else ERROR_DEADLINE
+            told = word(STATUS_START, self._line.windows()[1], "ERROR_CODE")
+            code = result.error_code if shown else told or ERROR_DEADLINE
             self._alarm_log.passing(code, f"part {record.inspection_id}")
         if not shown:
             log.warning(
@@ -240,7 +238,7 @@ class Cycle:
         if frame is not None:
             inspection = self._judge(frame, inspection.timing)
         purpose = Purpose.GOLDEN if master else Purpose.TEST
-        record = self._record(Part(master, 0, self._origin, purpose), pending, inspection)
+        record = self._record(Part(master, 0, self._origin if frame is None else frame.origin, purpose), pending, inspection)
         if master:
             self._watch.master(record.serial, record.verdict)
         self._mark(record, False)
@@ -283,7 +281,8 @@ class Cycle:
         return Record(0, part.serial, part.trigger_id, now, "", part.origin, None, None, failed, provenance, part.purpose)
 
     def _grab(self) -> tuple[Frame | None, Inspection]:
-        """A frame, or why there is none."""
+        """A frame, or why there is none; never with an exposure that somebody tries by hand."""
+        self._camera.adjust(None, None)
         frame, reason, grab_ms = self._camera.grab()
         return frame, Inspection.error(reason or Reason.INTERNAL, timing=Timing(grab_ms=grab_ms))
 

@@ -78,11 +78,11 @@ class Inspector:
         except ModelError:
             return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
         found = findings(scores, judged.maps, self.thresholds, ring, self._weld.um_per_px)
-        kinds = [kind for kind in refused_kinds(scores, found, self.thresholds) if kind is not None]
-        kinds += [f.kind for f in sorted(found, key=lambda f: -f.score) if not self.thresholds.tolerates(f)][:1]
+        refused = {kind for kind in refused_kinds(scores, found, self.thresholds) if kind is not None}
+        worst = max((f for f in found if f.kind in refused), key=lambda f: f.score, default=None)
         return Inspection(
-            verdict=Verdict.NOK if kinds else Verdict.OK,
-            reason=kinds[-1] if kinds else None,
+            verdict=Verdict.NOK if refused else Verdict.OK,
+            reason=next(iter(refused), None) if worst is None else worst.kind,
             ring=ring,
             quality=quality,
             scores=scores,

@@ -35,6 +35,15 @@ class Provenance:
     missing_min_mm: float = 0.0
 
     @property
+    def limits(self) -> str:
+        """The same in words."""
+        words = [f"hole {self.hole_threshold:g}", f"missing weld {self.missing_threshold:g}"]
+        words += [f"segment {number}: {limit:g}" for number, limit in self.segment_thresholds]
+        words += [f"holes below {self.hole_min_mm:g} mm tolerated"] * (self.hole_min_mm > 0)
+        words += [f"missing weld below {self.missing_min_mm:g} mm tolerated"] * (self.missing_min_mm > 0)
+        return ", ".join(words)
+
+    @property
     def thresholds(self) -> Thresholds:
         """All limits of the decision."""
         segments, hole_mm, missing_mm = self.segment_thresholds, self.hole_min_mm, self.missing_min_mm

@@ -1,7 +1,9 @@
 """What a panel may ask of the engine: frozen messages, defined once. An old one is not carried out: its sender saw that nothing came."""
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +28,8 @@ class Service:
     """The one bit of STATUS to set by hand."""
     look: bool = False
     """Take setting-up pictures, one after the other, judged and recorded by nobody."""
-    exposure_us: float | None = None
-    gain_db: float | None = None
+    exposure_us: Annotated[float, Field(gt=0, le=1_000_000, allow_inf_nan=False)] | None = None
+    gain_db: Annotated[float, Field(ge=0, le=48, allow_inf_nan=False)] | None = None
     """For the pictures; None: as the settings say."""
     over: bool = False
     """The work is done."""

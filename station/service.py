@@ -2,6 +2,7 @@
 
 import logging
 import time
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,12 +12,14 @@ from station.events import LookEvent, Preview
 from station.inspection import Inspector
 from station.plc.registers import Status
 from station.preview import make_preview
-from station.requests import Service
+from station.requests import Reload, Request, Service, TestPicture
 from station.vision.quality import measure
 from station.vision.unwrap import unwrap
 
 log = logging.getLogger("weldgate.service")
 
+SETTLE_S = 0.2
+"""A trigger that was accepted while READY fell shows in the bits by then."""
 LEASE_S = 3.0
 """A window that is killed or hangs lets the station go on after this time."""
 CLASSES = 64
@@ -30,7 +33,9 @@ class ServiceMode:
         self._until_s = -1e9
 
     def heard(self, request: Service) -> None:
-        """A request to begin, to go on or to end."""
+        """A request to begin, to go on or to end; whoever works here first is not put out by another window."""
+        if self.who not in ("", request.who):
+            return
         if request.over:
             self._until_s = -1e9
         elif not self.who:
@@ -38,14 +43,6 @@ class ServiceMode:
         self._said = request
         if not request.over:
             self._until_s = time.monotonic() + LEASE_S
-
-    def ended(self) -> bool:
-        """Once after it has ended: camera and bits must be as before."""
-        if self._said is None or self.who:
-            return False
-        log.info("service mode is over")
-        self._said = None
-        return True
 
     @property
     def who(self) -> str:
@@ -62,6 +59,41 @@ class ServiceMode:
     def looking(self) -> Service | None:
         """What pictures are wanted."""
         return self._said if self._said is not None and self.who and self._said.look else None
+
+
+class Attention:
+    """What people ask for beside the parts: it waits until READY is 0 and no part is in work or unread."""
+
+    def __init__(self) -> None:
+        self.service = ServiceMode()
+        self._tasks: dict[str, TestPicture | Reload] = {}
+        self._since_s = 0.0
+
+    def hear(self, requests: Sequence[Request]) -> None:
+        """Of each kind the last counts."""
+        for request in requests:
+            if isinstance(request, Service):
+                self.service.heard(request)
+            else:
+                if not self._tasks:
+                    self._since_s = time.monotonic()
+                self._tasks[request.type] = request
+
+    @property
+    def waiting(self) -> bool:
+        """Whether READY must be 0 for something that was asked for."""
+        return bool(self._tasks)
+
+    def due(self, status: Status) -> TestPicture | Reload | None:
+        """What can be done now, by the bits that the PLC reads; taken once."""
+        if not self._tasks or not drained(status) or time.monotonic() - self._since_s < SETTLE_S:
+            return None
+        return self._tasks.pop(next(iter(self._tasks)))
+
+
+def drained(status: Status) -> bool:
+    """No trigger is taken, no part is in work, no result waits to be read."""
+    return not status & (Status.READY | Status.BUSY | Status.RESULT_VALID | Status.TRIGGER_ACK)
 
 
 def look(camera: ReconnectingCamera, inspector: Inspector, wanted: Service) -> tuple[LookEvent, Preview | None]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from station.adjustments import laid_over
+from station.adjustments import laid_over, path_of
 from station.errors import SettingsError
 from station.settings import ReplaySettings, Settings, for_recipe
 
@@ -28,7 +28,9 @@ def load(path: Path) -> Settings:
         for number in settings.recipes:
             for_recipe(settings, number)
     except ValidationError as error:
-        raise SettingsError(f"{path}: {_first(error)}") from None
+        changed = path_of(path) if laid_over({}, path) else None
+        also = "" if changed is None else f" (with what was changed at the station: {changed.name}; remove it to go back)"
+        raise SettingsError(f"{path}{also}: {_first(error)}") from None
     return _anchored(settings, path.resolve().parent)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import FrameType
 from typing import TypeVar
 
+from station import adjustments
 from station.alarmlog import AlarmLog
 from station.archive.prune import Housekeeping
 from station.archive.reader import Wanted, find
@@ -25,6 +26,7 @@ from station.plc.buslog import BusLog
 from station.plc.line import make_line
 from station.plc.port import Line
 from station.recipe import Loaded, prepare
+from station.released import Released
 from station.settings import PylonSettings, Settings
 from station.settings_file import load
 from station.watch import Master, Watch
@@ -54,27 +56,15 @@ def make_cycle(
     alarm_log: AlarmLog,
     again: Callable[[], Settings] | None = None,
 ) -> Cycle:
-    """The cycle that the settings describe; `again` reads them again before a recipe is loaded."""
-    golden, used = settings.golden, [settings]
-
-    def new_settings() -> Settings:
-        return used[-1] if again is None else again()
-
-    def new_camera() -> Camera | None:
-        changed = new_settings()
-        if changed.camera == used[-1].camera:
-            return None
-        used.append(changed)
-        return make_camera(changed)
-
+    """The cycle that the settings describe; `again` reads them again when somebody has changed them."""
+    golden = settings.golden
     return Cycle(
         camera=ReconnectingCamera(make_camera(settings), settings.camera.reconnect_s),
         origin=settings.camera.origin,
         line=line,
         archive=archive,
         loaded=loaded,
-        prepare=lambda number: prepare(new_settings(), number),
-        new_camera=new_camera,
+        released=Released(settings, again or (lambda: settings), make_camera),
         watch=Watch(
             loaded,
             {serial: _master(settings.archive.folder, serial, Verdict(found)) for serial, found in golden.masters.items()},
@@ -127,6 +117,8 @@ def run_engine(path: Path) -> None:
         line = make_line(settings.plc, bus)
         stack.callback(line.stop)
         line.start()
+        for change in adjustments.words(path):
+            log.warning("changed at the station, over %s: %s", path.name, change)
         log.info("station up: model %s, PLC %s on port %d", loaded.provenance.model_version, settings.plc.mode, line.port)
         alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder)))
         listener = Listener(publisher.send, publisher.show, inbox.requests)

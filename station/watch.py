@@ -34,6 +34,7 @@ class Watch:
     def __init__(self, loaded: Loaded, masters: Mapping[str, Master], due_s: float | None, self_test_s: float) -> None:
         """`masters` by serial; `due_s`: a master not judged for so long is due; `self_test_s`: idle time between two self-tests."""
         self._masters, self._due_s, self._self_test_s = dict(masters), due_s, self_test_s
+        self._crc = loaded.provenance.config_crc
         self.use(loaded)
 
     def use(self, loaded: Loaded) -> None:
@@ -45,6 +46,10 @@ class Watch:
         self._self_test = loaded.self_test
         self.self_test_failed = False
         self._tested_s = time.monotonic()
+        crc = loaded.provenance.config_crc
+        if crc != self._crc:  # what was right by other limits proves nothing; what was wrong stays so
+            self._masters = {s: m if m.found not in (None, m.expected) else Master(m.expected) for s, m in self._masters.items()}
+        self._crc = crc
 
     @property
     def drifting(self) -> bool:

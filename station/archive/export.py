@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from station.archive.decided import segment_kinds
+from station.archive.decided import defect_kinds
 from station.archive.reader import Listed
 from station.archive.review import Opinion, reviews
 from station.domain import SEGMENTS, Inspection, Reason
@@ -122,7 +122,7 @@ def _dataset(entries: list[Listed], folder: Path, target: Path, all_ok: bool = F
         except (ImageError, LocateError) as error:
             yield entry.path, str(error)
             continue
-        kinds = [None] * SEGMENTS if all_ok else segment_kinds(record)
+        kinds = [None] * SEGMENTS if all_ok else defect_kinds(record)
         for index, (crop, kind) in enumerate(zip(segments(strip), kinds, strict=True), start=1):
             (target / CLASS_FOLDERS[kind] / f"{record.inspection_id:08d}_{index:02d}.png").write_bytes(encode_png(crop))
 

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
 
-from station.archive.schema import START
+from station.archive.schema import START, connect_to_read
 from station.errors import RecordError
 
 NAME = "journal.sqlite"
@@ -115,7 +115,7 @@ def _rows(folder: Path, query: str, values: list[str]) -> list[dict[str, str]]:
     if not path.exists():
         return []
     try:
-        with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=PATIENCE_S)) as connection:
+        with closing(connect_to_read(path)) as connection:
             connection.row_factory = sqlite3.Row
             return [dict(row) for row in connection.execute(query, values)]
     except sqlite3.Error as error:

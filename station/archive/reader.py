@@ -35,6 +35,7 @@ class Wanted:
     min_score: float | None = None
     """Score of NOK, at least 0.05: of the segment, or of the worst."""
     purpose: str | None = None
+    recipe: int | None = None
     newest_first: bool = False
     limit: int | None = None
 
@@ -102,6 +103,7 @@ def _conditions(wanted: Wanted) -> tuple[list[str], list[str | float]]:
         ("r.verdict = ?", wanted.verdict),
         ("r.reason = ?", wanted.reason),
         ("r.purpose = ?", wanted.purpose),
+        ("r.recipe = ?", wanted.recipe),
         ("s.segment = ?", wanted.segment),
         ("s.p_nok >= ?" if wanted.segment is not None else "r.worst_score >= ?", wanted.min_score),
     ]

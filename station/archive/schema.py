@@ -91,8 +91,7 @@ def read_index(folder: Path) -> sqlite3.Connection:
     if not path.is_file():
         raise RecordError(f"{folder}: no records here ({NAME} is missing); name an archive folder")
     try:
-        how = "mode=ro" if _writable(folder) else "mode=ro&immutable=1"  # beside a log that nobody can open
-        connection = sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=2.0)
+        connection = connect_to_read(path)
         version = connection.execute("PRAGMA user_version").fetchone()[0]
     except sqlite3.Error as error:
         raise RecordError(f"{path}: not a readable index ({error})") from None
@@ -103,8 +102,11 @@ def read_index(folder: Path) -> sqlite3.Connection:
     return connection
 
 
-def _writable(folder: Path) -> bool:
-    return os.access(folder, os.W_OK) or (folder / f"{NAME}-wal").exists()
+def connect_to_read(path: Path) -> sqlite3.Connection:
+    """A database in WAL mode, also where nobody may write the log beside it. Raises sqlite3.Error."""
+    writable = os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists()
+    how = "mode=ro" if writable else "mode=ro&immutable=1"
+    return sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=2.0)
 
 
 def link(before: str, record_sha256: str) -> str:

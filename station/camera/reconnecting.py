@@ -20,6 +20,8 @@ class ReconnectingCamera:
         """`reconnect_s`: pause between two attempts to open it."""
         self._camera, self._reconnect_s = camera, reconnect_s
         self._tried_s = self._alive_s = -1e9
+        self._adjusted: tuple[float | None, float | None] | None = None
+        """Exposure and gain set by hand."""
         self.there = False
         self.message = "camera not opened yet"
         """Why it is not there; empty if it is."""
@@ -67,23 +69,37 @@ class ReconnectingCamera:
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
         """For the next frames; None: as the settings say."""
-        if self.there:
-            try:
-                self._camera.adjust(exposure_us, gain_db)
-            except CameraLost as error:
-                self._lost(str(error))
+        wanted = None if exposure_us is None and gain_db is None else (exposure_us, gain_db)
+        if not self.there or wanted == self._adjusted:
+            return
+        try:
+            self._camera.adjust(exposure_us, gain_db)
+            self._adjusted = wanted
+        except CameraLost as error:
+            self._lost(str(error))
+        except Exception:  # it is opened again, as the settings say
+            log.exception("the camera ended with a fault")
+            self._lost("camera ended with a fault, see the log")
 
-    def exchange(self, camera: Camera) -> None:
-        """Another one in its place: the settings have changed."""
+    def exchange(self, camera: Camera) -> bool:
+        """Another one in its place: its settings have changed. False if it cannot be opened so; then the old one stays."""
         self._camera.close()
-        self._camera = camera
-        self._tried_s = -1e9
-        self._lost("camera is opened with changed settings")
+        try:
+            camera.open()
+        except CameraLost as error:
+            log.error("%s", error)
+            camera.close()
+            self._tried_s = -1e9
+            self._lost("camera is opened again with the settings before")
+            return False
+        self._camera, self._adjusted = camera, None
+        self.there, self.message, self._alive_s = True, "", time.monotonic()
+        return True
 
     def _lost(self, message: str) -> None:
         if message != self.message:
             log.warning("%s", message)
-        self.there, self.message = False, message
+        self.there, self.message, self._adjusted = False, message, None
 
     def close(self) -> None:
         """Let go of the device."""

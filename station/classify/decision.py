@@ -30,10 +30,9 @@ class Thresholds:
         own = dict(self.segments).get(index + 1)
         return self if own is None else Thresholds(own, own)
 
-    def tolerates(self, finding: Finding) -> bool:
-        """Only what was measured can be small enough."""
-        least_mm = self.hole_min_mm if finding.kind is Reason.HOLE else self.missing_min_mm
-        return finding.area_mm2 is not None and finding.length_mm < least_mm
+    def least_mm(self, kind: Reason) -> float:
+        """Of a kind."""
+        return self.hole_min_mm if kind is Reason.HOLE else self.missing_min_mm
 
 
 def segment_kind(scores: SegmentScores, thresholds: Thresholds) -> Reason | None:
@@ -81,14 +80,27 @@ def findings(scores: Sequence[SegmentScores], maps: Map, thresholds: Thresholds,
 def refused_kinds(scores: Sequence[SegmentScores], found: Sequence[Finding], thresholds: Thresholds) -> list[Reason | None]:
     """Kind of each segment that is refused: over its limit, and not for tolerated findings alone. None for the others."""
     kinds = [segment_kind(s, thresholds.of(i)) for i, s in enumerate(scores)]
-    return [kind if kind is None or not _tolerated(i, kind, found, thresholds) else None for i, kind in enumerate(kinds)]
+    return [kind if kind is None or not _tolerated(i, kind, scores[i], found, thresholds) else None for i, kind in enumerate(kinds)]
 
 
-def _tolerated(index: int, kind: Reason, found: Sequence[Finding], thresholds: Thresholds) -> bool:
-    """Whether all of its kind that reaches into a segment is tolerated, and there is any."""
+def _tolerated(index: int, kind: Reason, scores: SegmentScores, found: Sequence[Finding], thresholds: Thresholds) -> bool:
+    """Whether all of its kind in a segment and its neighbours was measured and is, taken together, shorter than the least length.
+
+    Never where the other kind is over its limit too: the map was not asked for it.
+    """
+    limits = thresholds.of(index)
+    if scores.hole >= limits.hole and scores.missing_weld >= limits.missing_weld:
+        return False
     start, end = index * SEGMENT_DEG, (index + 1) * SEGMENT_DEG
-    here = [f for f in found if f.kind is kind and any(f.start_deg < end + turn and f.end_deg > start + turn for turn in (0.0, 360.0))]
-    return bool(here) and all(thresholds.tolerates(f) for f in here)
+    of_kind = [f for f in found if f.kind is kind]
+    near = [f for f in of_kind if _reaches(f, start - SEGMENT_DEG, end + SEGMENT_DEG)]
+    if not any(_reaches(f, start, end) for f in of_kind) or any(f.area_mm2 is None for f in near):
+        return False
+    return sum(max(f.length_mm, f.width_mm or 0.0) for f in near) < thresholds.least_mm(kind)
+
+
+def _reaches(finding: Finding, start_deg: float, end_deg: float) -> bool:
+    return any(finding.start_deg < end_deg + turn and finding.end_deg > start_deg + turn for turn in (-360.0, 0.0, 360.0))
 
 
 def _measured(kind: Reason, extent: Extent, scores: Sequence[SegmentScores], ring: Ring, um_per_px: float) -> Finding:

@@ -47,6 +47,7 @@ WORDS = (
     QT_TRANSLATE_NOOP("data", "the inspection stands still"),
     QT_TRANSLATE_NOOP("data", "a recipe is loaded"),
     QT_TRANSLATE_NOOP("data", "the stored frame is judged differently"),
+    QT_TRANSLATE_NOOP("data", "a picture is taken or settings are loaded, as asked for in the window"),
     QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check that a part lies in the nest, and the camera's view"),
     QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check the part's seat and the camera's position"),
     QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, set width and height of the camera as in the settings"),

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import os
 import queue
 import threading
 from collections.abc import Iterator
@@ -156,21 +157,23 @@ class BusLog:
 
 def tail_bus(folder: Path, place: tuple[str, int], most: int) -> tuple[list[Edge], tuple[str, int]]:
     """Edges written since `place` (file name, byte), at most the newest, and the place after them. Raises RecordError."""
+    found: list[Edge] = []
     files = sorted(folder.glob("bus-????-??-??.jsonl"))
-    if not files:
-        return [], place
-    newest, begun = files[-1], place[1] if files[-1].name == place[0] else 0
-    try:
-        with newest.open("rb") as file:
-            size = file.seek(0, 2)
-            begin = max(begun, size - most * TAIL_BYTES)
-            file.seek(begin)
-            whole = file.read().rpartition(b"\n")[0]
-    except OSError as error:
-        raise RecordError(f"{newest}: cannot be read ({error.strerror})") from None
-    lines = whole.split(b"\n")[1 if begin > begun else 0 :]
-    found = [Edge(**json.loads(line)) for line in lines if line]
-    return found[-most:], (newest.name, begin + len(whole) + (1 if whole else 0))
+    for path in [file for file in files if file.name >= place[0]] if place[0] else files[-1:]:
+        begun = place[1] if path.name == place[0] else 0
+        try:
+            with path.open("rb") as file:
+                begin = max(begun, file.seek(0, os.SEEK_END) - most * TAIL_BYTES)
+                file.seek(begin)
+                whole = file.read().rpartition(b"\n")[0]
+            lines = whole.split(b"\n")[1 if begin > begun else 0 :]
+            found += [Edge(**json.loads(line)) for line in lines if line]
+        except OSError as error:
+            raise RecordError(f"{path}: cannot be read ({error.strerror})") from None
+        except (ValueError, TypeError):
+            raise RecordError(f"{path}: a line cannot be read; the file was cut off or changed") from None
+        place = path.name, begin + len(whole) + (1 if whole else 0)
+    return found[-most:], place
 
 
 def read_bus(folder: Path) -> Iterator[Edge]:

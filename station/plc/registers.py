@@ -86,6 +86,7 @@ class Offline(IntEnum):
     PREPARING = 8
     SELF_TEST_FAILED = 9
     SERVICE = 10
+    ATTENDED = 11
 
 
 class CommandCode(IntEnum):

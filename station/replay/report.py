@@ -32,7 +32,7 @@ def write_page(
     pictures = {source.name: source.path for source in sources}
     verdicts = Counter(entry["verdict"] for entry in entries.values())
     rows = [("images", len(entries)), *((v, verdicts[v]) for v in ("OK", "NOK", "ERROR")), ("model", judge.model_version)]
-    rows += [("thresholds", f"hole {judge.hole_threshold:g}, missing weld {judge.missing_threshold:g}"), ("recipe", judge.recipe)]
+    rows += [("thresholds", judge.limits), ("recipe", judge.recipe)]
     parts = ["<h1>weldgate: replay</h1>", _table(rows)]
     if comparison is not None:
         parts.append(f"<h2>Against the line</h2><p>{comparison.compared} parts compared, {len(comparison.flips)} verdicts flip.</p>")

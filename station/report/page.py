@@ -145,7 +145,7 @@ def _identity(records: Sequence[Record]) -> str:
     head = "<tr><th>parts</th><th>software</th><th>recipe</th><th>model</th><th>SHA-256</th><th>thresholds</th><th>configuration</th></tr>"
     rows = "".join(
         f"<tr><td>{count}</td><td>{escape(p.software)}</td><td>{p.recipe}</td><td>{escape(p.model_version)}</td>"
-        f"<td>{escape(p.model_hash[:16])}</td><td>hole {p.hole_threshold:g}, missing weld {p.missing_threshold:g}</td>"
+        f"<td>{escape(p.model_hash[:16])}</td><td>{p.limits}</td>"
         f"<td>{p.config_crc}</td></tr>"
         for p, count in judges.items()
     )

@@ -1,4 +1,5 @@
 import json
+from dataclasses import asdict
 from itertools import pairwise
 from pathlib import Path
 
@@ -6,7 +7,7 @@ import pytest
 
 from station.__main__ import main
 from station.errors import RecordError
-from station.plc.buslog import BusLog, Edge, edges, read_bus
+from station.plc.buslog import BusLog, Edge, edges, read_bus, tail_bus
 from station.plc.registers import (
     COMMAND_START,
     COMMAND_WORDS,
@@ -119,3 +120,35 @@ def test_a_full_disk_costs_edges_and_says_how_many(tmp_path: Path, monkeypatch: 
     recorder.close()
     lines = [json.loads(line) for path in tmp_path.iterdir() for line in path.read_text().splitlines()]
     assert [(e["name"], e["value"]) for e in lines] == [("ENABLE", 0), ("EDGES_LEFT_OUT", 1)]
+
+
+def test_what_is_followed_is_what_is_written_also_over_midnight(tmp_path: Path) -> None:
+    """Edge by edge, whole lines alone, each once."""
+    made = [Edge(f"2026-11-2{day}T12:00:00.{i:03d}+00:00", "PLC", "TRIGGER", i % 2, "ü" * (i % 7)) for day in (1, 2) for i in range(50)]
+    lines = [(edge.time[:10], (json.dumps(asdict(edge)) + "\n").encode()) for edge in made]
+    followed: list[Edge] = []
+    place: tuple[str, int] = ("", 0)
+    assert tail_bus(tmp_path, place, 10) == ([], place)
+    for number, (day, line) in enumerate(lines):
+        half = len(line) // 2
+        for part in (line[:half], line[half:]):
+            with (tmp_path / f"bus-{day}.jsonl").open("ab") as file:
+                file.write(part)
+            if number % 3 == 0:
+                new, place = tail_bus(tmp_path, place, 1000)
+                followed += new
+    followed += tail_bus(tmp_path, place, 1000)[0]
+    assert followed == made == list(read_bus(tmp_path))
+
+
+def test_a_late_follower_gets_the_newest_alone(tmp_path: Path) -> None:
+    made = [Edge(f"2026-11-21T12:00:00.{i:03d}+00:00", "station", "READY", i % 2) for i in range(500)]
+    (tmp_path / "bus-2026-11-21.jsonl").write_text("".join(json.dumps(asdict(edge)) + "\n" for edge in made))
+    found, _ = tail_bus(tmp_path, ("", 0), 20)
+    assert found == made[-20:]
+
+
+def test_a_spoilt_line_is_said_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "bus-2026-11-21.jsonl").write_text("{spoilt\n")
+    with pytest.raises(RecordError, match="cut off or changed"):
+        tail_bus(tmp_path, ("", 0), 20)

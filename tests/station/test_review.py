@@ -146,6 +146,7 @@ SEEN = st.builds(
     drifting=BOOLS,
     settings_refused=BOOLS,
     service=st.sampled_from(["", "Ada"]),
+    attended=BOOLS,
     bit=st.just(0),
     recipe=st.just(1),
     config_crc=st.just(7),
@@ -156,7 +157,7 @@ SEEN = st.builds(
 def test_the_station_is_ready_only_if_nothing_keeps_it_and_everything_that_lasts_is_an_alarm(seen: Seen) -> None:
     told, lasting = health(seen), alarms(seen)
     assert told.ready == (told.offline is Offline.NONE)
-    assert told.ready == (seen.camera_there and seen.can_write and not seen.self_test_failed and not seen.service)
+    assert told.ready == (seen.camera_there and seen.can_write and not (seen.self_test_failed or seen.service or seen.attended))
     assert told.failure == any(a in lasting for a in (Alarm.CAMERA_LOST, Alarm.ARCHIVE_FULL, Alarm.SELF_TEST_FAILED))
     assert told.function_check == (Alarm.MASTER_WRONG in lasting or Alarm.MASTERS_DUE in lasting)
     assert told.alarm == (int(lasting[0]) if lasting else 0)

@@ -15,12 +15,14 @@ from station.alarmlog import AlarmLog
 from station.archive.journal import Kind, entries
 from station.archive.reader import find
 from station.archive.writer import Archive
-from station.domain import Image
+from station.camera.pylon import PylonCamera
+from station.domain import Frame, Image
 from station.events import Event, LookEvent, StatusEvent
 from station.listener import Listener
 from station.plc.alarms import Alarm
 from station.plc.line import make_line
-from station.plc.registers import Offline, Status, VerdictCode
+from station.plc.modbus import ModbusClient
+from station.plc.registers import Control, Flags, Offline, Status, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.recipe import prepare
 from station.requests import Reload, Request, Service, TestPicture
@@ -199,3 +201,88 @@ def test_changed_settings_are_used_at_once_and_refused_ones_are_an_alarm(running
     running.ask(Reload(time.time()))
     running.until(lambda e: Alarm.SETTINGS_REFUSED not in e.alarms and e.config_crc == before.config_crc)
     assert running.part("AS BEFORE", good).verdict is VerdictCode.OK
+
+
+def test_a_part_is_never_judged_with_an_exposure_that_was_tried_by_hand(
+    running: Running, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good, used = frames[label_with("OK")["frame"]], []
+    grab = PylonCamera.grab
+
+    def noting(camera: PylonCamera) -> Frame:
+        assert camera._camera is not None
+        used.append(camera._camera.ExposureTime.Value)
+        return grab(camera)
+
+    monkeypatch.setattr(PylonCamera, "grab", noting)
+    running.feed.show(good)
+    enable(running)
+    wanted = Service(time.time(), "Ada", look=True, exposure_us=900.0)
+    running.until(lambda _: any(isinstance(e, LookEvent) for e in running.events), wanted)
+    assert used[-1] == 900.0
+    looks = len(used)
+    assert running.part("AFTER", good).verdict is VerdictCode.OK, "as soon as the lease is over"
+    assert used[looks:][-1] == running.settings.camera.exposure_us  # type: ignore[union-attr]
+
+
+def test_a_result_that_nobody_has_read_is_not_wiped_by_changed_settings(running: Running, frames: dict[str, Image]) -> None:
+    running.feed.show(frames[label_with("OK")["frame"]])
+
+    async def drive() -> tuple[list[int], bool]:
+        client, beat = ModbusClient("127.0.0.1", running._line.port), 0
+        await client.connect()
+
+        async def status() -> int:
+            nonlocal beat
+            beat += 1
+            await client.write(1, [beat])
+            return (await client.read(100, 1))[0]
+
+        async def until(bit: Status) -> bool:
+            for _ in range(400):
+                if await status() & bit:
+                    return True
+                await asyncio.sleep(0.02)
+            return False
+
+        await client.write(0, [int(Control.ENABLE)])
+        assert await until(Status.READY)
+        await client.write(2, [7])
+        await client.write(0, [int(Control.ENABLE | Control.TRIGGER)])
+        assert await until(Status.TRIGGER_ACK)
+        await client.write(0, [int(Control.ENABLE)])
+        assert await until(Status.RESULT_VALID)
+        running.ask(Reload(time.time()))
+        seen = []
+        for _ in range(50):
+            seen.append(await status())
+            await asyncio.sleep(0.02)
+        await client.write(0, [int(Control.ENABLE | Control.RESULT_ACK)])
+        await asyncio.sleep(0.1)
+        await client.write(0, [int(Control.ENABLE)])
+        ready = await until(Status.READY)
+        client.close()
+        return seen, ready
+
+    seen, ready = asyncio.run(drive())
+    assert all(s & Status.RESULT_VALID and s & Status.OK for s in seen)
+    assert not seen[-1] & Status.READY
+    assert ready
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"camera": {"exposure_us": 0.000001}}, {"camera": {"serial": "9999"}}, {"camera": {"device_class": "BaslerGigE"}}],
+    ids=["exposure out of range", "another camera", "another kind of camera"],
+)
+def test_a_camera_that_cannot_be_used_so_is_refused_and_the_one_before_goes_on(
+    running: Running, frames: dict[str, Image], change: dict[str, object]
+) -> None:
+    good = frames[label_with("OK")["frame"]]
+    enable(running)
+    adjustments.write(running.path, change)
+    running.ask(Reload(time.time()))
+    running.until(lambda e: Alarm.SETTINGS_REFUSED in e.alarms)
+    answer = running.part("AS BEFORE", good)
+    assert answer.verdict is VerdictCode.OK
+    assert Flags.SIMULATED in answer.flags

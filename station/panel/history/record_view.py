@@ -45,7 +45,7 @@ class RecordView(QWidget):
                 "quality": translate("history", "brightness · sharpness"),
                 "ring": translate("history", "ring x · y · r px"),
                 "steps": translate("history", "grab · find · unwrap · judge ms"),
-                "limits": translate("history", "limits hole · missing weld"),
+                "limits": translate("history", "limits"),
                 "model": translate("history", "model · recipe"),
                 "origin": translate("history", "origin · purpose"),
             }
@@ -110,7 +110,7 @@ class RecordView(QWidget):
             quality="–" if q is None else f"{q.mean_dn:.0f} · {q.sharpness:.3f}",
             ring="–" if ring is None else f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f}",
             steps=" · ".join("–" if ms is None else f"{ms:.0f}" for ms in steps),
-            limits=f"{p.hole_threshold:.2f} · {p.missing_threshold:.2f}",
+            limits=p.limits.replace(", ", "\n"),
             model=f"{p.model_version} · {p.recipe}",
             origin=f"{data(record.origin)} · {data(record.purpose)}",
         )

@@ -282,6 +282,10 @@
         <translation>das gespeicherte Bild wird anders beurteilt</translation>
     </message>
     <message>
+        <source>a picture is taken or settings are loaded, as asked for in the window</source>
+        <translation>ein Bild wird aufgenommen oder Einstellungen werden geladen, wie im Fenster verlangt</translation>
+    </message>
+    <message>
         <source>judge the part again; if it comes back, check that a part lies in the nest, and the camera&apos;s view</source>
         <translation>Teil neu prüfen; kommt es wieder: prüfen, ob ein Teil im Nest liegt, und die Sicht der Kamera</translation>
     </message>
@@ -752,8 +756,8 @@
         <translation>Bild · Ring · Abwicklung · Urteil ms</translation>
     </message>
     <message>
-        <source>limits hole · missing weld</source>
-        <translation>Grenzen Loch · fehlende Naht</translation>
+        <source>limits</source>
+        <translation>Grenzen</translation>
     </message>
     <message>
         <source>model · recipe</source>
@@ -1245,6 +1249,14 @@ Jede Stufe darf, was die davor dürfen.</translation>
     <message>
         <source>{n} parts: {released} would be released, {refused} refused</source>
         <translation>{n} Teile: {released} würden frei, {refused} gesperrt</translation>
+    </message>
+    <message>
+        <source>{n} parts that were too poor would be judged: nobody knows how</source>
+        <translation>{n} bisher zu schlechte Bilder würden beurteilt: niemand weiß, wie</translation>
+    </message>
+    <message>
+        <source>no part of this recipe in the archive: nobody knows what the limits do</source>
+        <translation>kein Teil dieses Rezepts im Archiv: niemand weiß, was die Grenzen bewirken</translation>
     </message>
     <message>
         <source>saved; no engine is there, it is used at the next start</source>

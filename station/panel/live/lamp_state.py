@@ -31,6 +31,7 @@ WHY_OFFLINE = {
     Offline.PREPARING: "a recipe is loaded",
     Offline.SELF_TEST_FAILED: "the stored frame is judged differently",
     Offline.SERVICE: "works on the station",
+    Offline.ATTENDED: "a picture is taken or settings are loaded, as asked for in the window",
 }
 """For reasons that the lamp has no word of its own for."""
 

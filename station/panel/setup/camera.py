@@ -136,9 +136,10 @@ class CameraPage(QWidget):
         camera = self._session.settings.camera
         if not isinstance(camera, PylonSettings) or self.exposure.value is None or self.gain.value is None:
             return
-        new = {"exposure_us": (camera.exposure_us, self.exposure.value), "gain_db": (camera.gain_db, self.gain.value)}
+        used = {"exposure_us": (camera.exposure_us, self.exposure.value), "gain_db": (camera.gain_db, self.gain.value)}
+        new: dict[tuple[str, ...], tuple[object, object]] = {("camera", key): pair for key, pair in used.items() if pair[0] != pair[1]}
         try:
-            change(self._session, ("camera",), {k: pair for k, pair in new.items() if pair[0] != pair[1]}, self.reason.text())
+            change(self._session, new, self.reason.text())
         except (SettingsError, RecordError) as error:
             self.problem.setText(str(error))
             return

@@ -1,5 +1,9 @@
-"""A change of settings at the station: in the journal with its reason first, then in the file, then the engine is told."""
+"""A change of settings at the station: in the journal with its reason first, then in the file, then the engine is told.
 
+What cannot be used is taken back, in file and journal: at its next start the engine would not come up.
+"""
+
+import copy
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,38 +16,39 @@ from station.settings_file import load
 MIN_REASON = 5
 """Characters of a reason."""
 
+Values = Mapping[tuple[str, ...], tuple[object, object]]
+"""Before and after of each key, named from the top: ("recipes", "1", "model", "hole_threshold")."""
 
-def change(session: Session, place: tuple[str, ...], values: Mapping[str, tuple[object, object]], reason: str) -> bool:
-    """Values (before, after) of keys below `place`. Whether the engine could be told.
 
-    Raises SettingsError, RecordError; then nothing was changed.
-    """
+def change(session: Session, values: Values, reason: str) -> bool:
+    """Whether the engine could be told. Raises SettingsError, RecordError; then nothing was changed."""
     if session.user is None or len(reason.strip()) < MIN_REASON:
         raise SettingsError("a login and a reason are needed")
-    before = adjustments.read(session.path)
-    changes: dict[str, Any] = dict(before)
-    level = changes
-    for name in place:
-        level[name] = dict(level.get(name, {}))
-        level = level[name]
-    level.update({key: after for key, (_, after) in values.items()})
-    for key, (old, new) in values.items():
-        append(session.folder, Kind.SETTING, session.user.name, ".".join((*place, key)), _said(old), _said(new), reason.strip())
-    adjustments.write(session.path, changes)
-    try:
-        session.settings = load(session.path)
-    except SettingsError:
-        adjustments.write(session.path, before)
-        raise
-    user = session.user.name
+    before, who = adjustments.read(session.path), session.user.name
+    changes: dict[str, Any] = copy.deepcopy(before)
+    for place, (_, after) in values.items():
+        level = changes
+        for name in place[:-1]:
+            level = level.setdefault(name, {})
+        level[place[-1]] = after
+
+    def note(back: bool, why: str) -> None:
+        for place, (old, new) in values.items():
+            pair = (_said(new), _said(old)) if back else (_said(old), _said(new))
+            append(session.folder, Kind.SETTING, who, ".".join(place), *pair, why)
 
     def undo() -> None:
-        """The station refused them, for its self-test or a file: at its next start it would not come up."""
         adjustments.write(session.path, before)
         session.settings = load(session.path)
-        for key, (old, new) in values.items():
-            append(session.folder, Kind.SETTING, user, ".".join((*place, key)), _said(new), _said(old), "refused by the station")
+        note(True, "refused by the station")
 
+    note(False, reason.strip())
+    try:
+        adjustments.write(session.path, changes)
+        session.settings = load(session.path)
+    except SettingsError:
+        undo()
+        raise
     return session.reload(undo)
 
 

@@ -155,13 +155,13 @@ class RecipePage(QWidget):
         number = int(self.recipe.currentData())
 
         def work(told: Told) -> tuple[Values, WhatIf] | None:
-            rows = find(folder, Wanted(newest_first=True, limit=PARTS))
-            records: list[Record] = []
+            rows = find(folder, Wanted(recipe=number, newest_first=True, limit=PARTS))
+            judge, records = (None if not rows else read_words(folder, rows[0])[0]), list[Record]()
             for count, row in enumerate(rows):
                 if count % 20 == 0 and not told(count, len(rows)):
                     return None
                 record, _ = read_words(folder, row)
-                if record is not None and record.provenance.recipe == number:
+                if record is not None and judge is not None and record.provenance.model_hash == judge.provenance.model_hash:
                     records.append(record)
             return values, what_if(records, thresholds, quality)
 
@@ -180,23 +180,23 @@ class RecipePage(QWidget):
                 n=found.looked_at, released=len(found.released), refused=len(found.refused)
             )
         )
+        unknown = translate("recipe", "{n} parts that were too poor would be judged: nobody knows how").format(n=found.unknown)
+        none = translate("recipe", "no part of this recipe in the archive: nobody knows what the limits do")
+        self.problem.setText(none if not found.looked_at else unknown if found.unknown else "")
         self._look()
 
     def _save(self) -> None:
         values, number = self.values(), str(self.recipe.currentData())
         if values is None:
             return
-        told = True
+        new: dict[tuple[str, ...], tuple[object, object]] = {}
+        for key, value in values[0].items():
+            if value != float(f"{self._in_use[key]:.6g}"):
+                new["recipes", number, FIELDS[key][0], key] = (self._in_use[key], value)
+        if values[1] != self._segments_in_use:
+            new["recipes", number, "model", "segment_thresholds"] = (self._segments_in_use, values[1])
         try:
-            for section in ("model", "quality"):
-                new: dict[str, tuple[object, object]] = {}
-                for key, value in values[0].items():
-                    if FIELDS[key][0] == section and value != float(f"{self._in_use[key]:.6g}"):
-                        new[key] = (self._in_use[key], value)
-                if section == "model" and values[1] != self._segments_in_use:
-                    new["segment_thresholds"] = (self._segments_in_use, values[1])
-                if new:
-                    told = change(self._session, ("recipes", number, section), new, self.reason.text())
+            told = change(self._session, new, self.reason.text())
         except (SettingsError, RecordError) as error:
             self.problem.setText(str(error))
             return

@@ -1,0 +1,50 @@
+"""The settings that the engine goes by: those of its start, until changed ones are wanted and accepted."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from station.camera.port import Camera
+from station.errors import SettingsError
+from station.recipe import Loaded, prepare
+from station.settings import PylonSettings, Settings
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """Changed settings, ready to be used."""
+
+    settings: Settings
+    loaded: Loaded
+    camera: Camera | None
+    """If it is used otherwise."""
+
+
+class Released:
+    """Recipes are always loaded by the settings in use, so that one configuration names recipe and camera together."""
+
+    def __init__(self, settings: Settings, again: Callable[[], Settings], make_camera: Callable[[Settings], Camera]) -> None:
+        """`again` reads the file. Raises WeldgateError."""
+        self._settings, self._again, self._make_camera = settings, again, make_camera
+
+    def prepare(self, number: int) -> Loaded:
+        """A recipe. Raises WeldgateError."""
+        return prepare(self._settings, number)
+
+    def changed(self, number: int) -> Change:
+        """The file as it is now, with a recipe loaded by it. Raises WeldgateError."""
+        new, camera = self._again(), None
+        if _which(new) != _which(self._settings):
+            raise SettingsError("another camera cannot take over while the station runs; start it again")
+        loaded = prepare(new, number)
+        if new.camera != self._settings.camera:
+            camera = self._make_camera(new)
+        return Change(new, loaded, camera)
+
+    def accept(self, change: Change) -> None:
+        """From now on."""
+        self._settings = change.settings
+
+
+def _which(settings: Settings) -> tuple[str, ...]:
+    camera = settings.camera
+    return (camera.kind, camera.device_class, camera.serial) if isinstance(camera, PylonSettings) else (camera.kind,)
