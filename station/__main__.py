@@ -15,8 +15,6 @@ from station.errors import WeldgateError
 from station.records_command import add_commands
 
 SETTINGS = Path("station.toml")
-WINDOW_NICENESS = 15
-"""The window, also while it opens, takes the time that the engine leaves."""
 SHIPPED = Path(__file__).resolve().parent.parent / "models" / "shipped"
 """The networks that come with the station."""
 
@@ -95,8 +93,8 @@ def _engine(arguments: argparse.Namespace) -> int:
 
 
 def _panel(arguments: argparse.Namespace) -> int:
-    if hasattr(os, "nice"):
-        os.nice(WINDOW_NICENESS)
+    if hasattr(os, "SCHED_IDLE"):  # the window, also while it opens, takes the time that the engine leaves
+        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
     from station.panel.app import run_panel
 
     return run_panel(arguments.settings)

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from scipy.stats import binomtest
-
 from station.errors import RecordError
 
 VERDICTS = ("OK", "NOK")
@@ -42,6 +40,8 @@ def errors(truth: Mapping[str, str], said: Mapping[str, str]) -> Errors:
 
 def interval(hits: int, trials: int) -> tuple[float, float]:
     """95 % confidence interval of a share (Clopper and Pearson, 1934); (0, 1) without trials."""
+    from scipy.stats import binomtest  # takes most of a second, which the window's start would have
+
     if not trials:
         return 0.0, 1.0
     found = binomtest(hits, trials).proportion_ci(0.95, method="exact")

@@ -165,7 +165,9 @@ def test_limits_that_the_station_refuses_are_taken_back(station: tuple[Path, Lin
     """Its stored frame would be too blurred for them: the station would not come up again."""
     path, line = station
     line.passes(qtbot, 1)
-    recipe = log_in(window, qtbot, "Ada", "1234").recipe
+    setup = log_in(window, qtbot, "Ada", "1234")
+    setup.show_tab(setup.recipe)
+    recipe = setup.recipe
     recipe.fields["min_sharpness"].edit.setText("5")
     recipe.reason.setText("trial of the sharpness limit")
     qtbot.mouseClick(recipe.ask, LEFT)

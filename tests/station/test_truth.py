@@ -11,7 +11,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from station.__main__ import main
@@ -37,6 +37,7 @@ def test_every_part_of_known_truth_is_right_or_one_kind_of_wrong(truth: dict[str
     assert set(known) - set(wrong) == {name for name in known if truth[name] == said[name]}
 
 
+@settings(deadline=None)  # the first call loads SciPy
 @given(st.integers(0, 400), st.integers(1, 400))
 def test_an_interval_holds_its_share(hits: int, trials: int) -> None:
     hits = min(hits, trials)

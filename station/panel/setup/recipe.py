@@ -1,5 +1,6 @@
 """Limits of a recipe: what they would have done to the parts of the archive is shown before they can be saved, with a reason."""
 
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QComboBox, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from station.archive.reader import Wanted, find, read_words
@@ -42,6 +43,7 @@ class RecipePage(QWidget):
         super().__init__()
         self._session = session
         self._in_use: dict[str, float] = {}
+        self._segments_in_use: dict[int, float] = {}
         self._asked: Values | None = None
         """Values of the last what-if."""
         self.recipe = QComboBox()
@@ -108,7 +110,12 @@ class RecipePage(QWidget):
         self._work.failed.connect(self.problem.setText)
         session.user_changed.connect(self._look)
         session.change_refused.connect(self._on_refused)
-        self._fill()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        """The limits of a model are in its file: loaded once they are looked at."""
+        if not self._in_use:
+            self._fill()
+        super().showEvent(event)
 
     def _fill(self) -> None:
         """The limits in use."""
