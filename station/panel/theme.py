@@ -86,8 +86,10 @@ def use(theme: str) -> None:
     _used[0] = theme
     app = QApplication.instance()
     if isinstance(app, QApplication):
-        app.setStyle("Fusion")  # looks the same on every machine
-        app.setStyleSheet(style(THEMES[theme]))
+        sheet = style(THEMES[theme])
+        if app.styleSheet() != sheet:  # dresses every widget again
+            app.setStyle("Fusion")  # looks the same on every machine
+            app.setStyleSheet(sheet)
 
 
 def style(c: Colors) -> str:

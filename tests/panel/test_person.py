@@ -16,9 +16,9 @@ from station import adjustments
 from station.archive.journal import Kind, entries
 from station.archive.review import Opinion, State, reviews
 from station.imagefile import read_image
-from station.panel import theme, words
 from station.panel.app import open_window
 from station.panel.history.page import HistoryPage
+from station.panel.live.page import LivePage
 from station.panel.setup.page import SetupPage
 from station.panel.window import Window
 from station.plc.registers import VerdictCode
@@ -74,8 +74,6 @@ def window(station: tuple[Path, Line], qtbot: QtBot) -> Iterator[Window]:
     qtbot.waitUntil(lambda: shown.session.engine_there, timeout=60_000)
     yield shown
     shown.close()
-    words.use("en")
-    theme.use("dark")
 
 
 def log_in(window: Window, qtbot: QtBot, name: str, pin: str) -> SetupPage:
@@ -111,6 +109,7 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     window.go(1)
     history = window.page
     assert isinstance(history, HistoryPage)
+    history.since.setCurrentText("last hour")
     history.verdict.setCurrentText("NOK")
     assert history.film.count() == len(nok)
     history.film.setCurrentRow(0)
@@ -235,3 +234,19 @@ def test_nobody_stays_logged_in_for_ever(window: Window, qtbot: QtBot) -> None:
     log_in(window, qtbot, "Ada", "1234")
     assert session.user is not None
     qtbot.waitUntil(lambda: session.user is None, timeout=5000)
+
+
+def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
+    _, line = station
+    session = window.session
+    line.passes(qtbot, 4)
+    qtbot.waitUntil(lambda: session.last_nok is not None, timeout=10_000)
+    live = window._pages[0]
+    assert isinstance(live, LivePage)
+    qtbot.mouseClick(live.show_map, LEFT)
+    qtbot.waitUntil(lambda: live._nok_strip._map is not None, timeout=20_000)
+    overlay = live._nok_strip._map
+    assert overlay is not None
+    seen = [overlay.pixelColor(x, y).alpha() for x in range(0, overlay.width(), 8) for y in range(0, overlay.height(), 4)]
+    assert max(seen) > 100
+    assert sum(a > 100 for a in seen) < len(seen) / 2

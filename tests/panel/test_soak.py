@@ -7,15 +7,10 @@ from PySide6.QtWidgets import QLabel
 from pytestqt.qtbot import QtBot
 
 from deploy.soak_panel import soak
-from station.panel import theme, words
 
 
 def test_many_parts_leave_no_widget_thread_or_connection_behind(tmp_path: Path, qtbot: QtBot) -> None:
-    try:
-        levels = soak(tmp_path, 800)
-    finally:
-        words.use("en")
-        theme.use("dark")
+    levels = soak(tmp_path, 800)
     later = levels[5:]
     assert len({(level.widgets, level.threads, level.files) for level in later}) == 1, levels
     assert later[-1].memory_mb - later[0].memory_mb < 15, levels

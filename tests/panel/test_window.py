@@ -15,7 +15,7 @@ from station.channel import Inbox, Publisher, Subscriber
 from station.domain import Image, Ring
 from station.errors import LineError
 from station.events import Counts
-from station.panel import theme, words
+from station.panel import theme
 from station.panel.app import open_window
 from station.panel.live.page import LivePage
 from station.panel.setup.page import SetupPage
@@ -61,8 +61,6 @@ def window(path: Path, qtbot: QtBot) -> Iterator[Window]:
     shown.show()
     yield shown
     shown.close()
-    words.use("en")
-    theme.use("dark")
 
 
 def live(window: Window) -> LivePage:

@@ -1,5 +1,6 @@
 """Past parts: the last 300 or what is searched for, one of them opened, reviewed, exported."""
 
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
@@ -8,7 +9,7 @@ from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QLineEdit, QP
 
 from station.archive.export import export
 from station.archive.reader import Row, Wanted, find, read_record, read_records
-from station.archive.review import Opinion, State, give, possible, reviews
+from station.archive.review import Opinion, Review, State, give, possible, reviews
 from station.domain import SEGMENTS, Reason, Verdict
 from station.errors import ImageError, LocateError, RecordError
 from station.panel.card import label
@@ -37,7 +38,7 @@ class HistoryPage(QWidget):
         self.gallery.toggled.connect(self._on_gallery)
         self.look_up.clicked.connect(self.search)
         self.serial.returnPressed.connect(self.search)
-        for box in (self.verdict, self.kind, self.segment, self.score):
+        for box in (self.since, self.verdict, self.kind, self.segment, self.score):
             box.currentIndexChanged.connect(self.search)
         self._work.done.connect(self._on_pictures)
         self._work.failed.connect(self._problem.setText)
@@ -51,7 +52,7 @@ class HistoryPage(QWidget):
     def _lay_out(self) -> None:
         self.serial = QLineEdit()
         self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
-        self.verdict, self.kind, self.segment, self.score = QComboBox(), QComboBox(), QComboBox(), QComboBox()
+        self.verdict, self.kind, self.segment, self.score, self.since = (QComboBox() for _ in range(5))
         self.verdict.addItem(translate("history", "all verdicts"), None)
         for verdict in Verdict:
             self.verdict.addItem(str(verdict), str(verdict))
@@ -65,10 +66,18 @@ class HistoryPage(QWidget):
         self.score.addItem(translate("history", "any score"), None)
         for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95):
             self.score.addItem(f"≥ {score:g}", score)
+        self.since.addItem(translate("history", "any time"), None)
+        for text, hours in (
+            (translate("history", "last hour"), 1),
+            (translate("history", "last 8 hours"), 8),
+            (translate("history", "last day"), 24),
+            (translate("history", "last week"), 168),
+        ):
+            self.since.addItem(text, hours)
         self.look_up, self.gallery = QPushButton(translate("history", "Search")), QPushButton(translate("history", "Gallery"))
         self.gallery.setCheckable(True)
         top = QHBoxLayout()
-        for widget in (self.serial, self.verdict, self.kind, self.segment, self.score, self.look_up, self.gallery):
+        for widget in (self.serial, self.since, self.verdict, self.kind, self.segment, self.score, self.look_up, self.gallery):
             top.addWidget(widget, 1 if widget is self.serial else 0)
         self._count, self._problem, self._work = label("", "quiet"), label("", "problem", wrap=True), WorkBar()
         left = QWidget()
@@ -107,9 +116,10 @@ class HistoryPage(QWidget):
 
     def wanted(self) -> Wanted:
         """What the fields say."""
-        segment, score = self.segment.currentData(), self.score.currentData()
+        segment, score, hours = self.segment.currentData(), self.score.currentData(), self.since.currentData()
         return Wanted(
             serial=self.serial.text().strip() or None,
+            since=None if hours is None else datetime.now(UTC) - timedelta(hours=hours),
             verdict=self.verdict.currentData(),
             reason=self.kind.currentData(),
             segment=segment,
@@ -160,11 +170,19 @@ class HistoryPage(QWidget):
         if row is None:
             self._review.setText("")
             return
-        review = reviews(self._session.folder).get(row.inspection_id)
+        review = self._reviews().get(row.inspection_id)
         state = data(review.state if review else State.NONE)
         said = ", ".join(f"{who}: {data(opinion)}" for who, opinion in review.opinions.items()) if review else ""
         hint = translate("history", "log in to review") if user is None else ""
         self._review.setText(" · ".join(text for text in (state, said, hint) if text))
+
+    def _reviews(self) -> dict[int, Review]:
+        """All reviews; if they cannot be read, that is said."""
+        try:
+            return reviews(self._session.folder)
+        except RecordError as error:
+            self._problem.setText(str(error))
+            return {}
 
     def say(self, opinion: Opinion) -> None:
         """Whoever is logged in says it of the chosen part."""
@@ -190,7 +208,7 @@ class HistoryPage(QWidget):
 
     def _on_pictures(self, found: object) -> None:
         if isinstance(found, dict):
-            self.film.fill(list(self.film.rows.values()), {**self._session.thumbs, **found}, reviews(self._session.folder))
+            self.film.fill(list(self.film.rows.values()), {**self._session.thumbs, **found}, self._reviews())
         else:
             self._problem.setText(str(found))
 

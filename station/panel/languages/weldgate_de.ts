@@ -640,6 +640,26 @@
         <translation>jeder Wert</translation>
     </message>
     <message>
+        <source>any time</source>
+        <translation>jede Zeit</translation>
+    </message>
+    <message>
+        <source>last hour</source>
+        <translation>letzte Stunde</translation>
+    </message>
+    <message>
+        <source>last 8 hours</source>
+        <translation>letzte 8 Stunden</translation>
+    </message>
+    <message>
+        <source>last day</source>
+        <translation>letzter Tag</translation>
+    </message>
+    <message>
+        <source>last week</source>
+        <translation>letzte Woche</translation>
+    </message>
+    <message>
         <source>Search</source>
         <translation>Suchen</translation>
     </message>

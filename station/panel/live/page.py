@@ -3,6 +3,7 @@
 import time
 
 from PySide6.QtCore import QTimer
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from station.domain import SEGMENTS, Verdict
@@ -15,7 +16,7 @@ from station.panel.live.weld_view import WeldView
 from station.panel.pictures import defect_map, drawn, nok_scores, strip_image
 from station.panel.session import Session
 from station.panel.words import translate
-from station.panel.work import WorkBar
+from station.panel.work import Told, WorkBar
 from station.recipe import load_inspector
 from station.settings import for_recipe
 
@@ -167,10 +168,12 @@ class LivePage(QWidget):
         if pinned is None or pinned[0].record.verdict is not Verdict.NOK:
             return
         record, folder = pinned[0].record, self._session.folder
-        settings = for_recipe(self._session.settings, record.provenance.recipe)
-        self._work.start(
-            translate("live", "defect map"), lambda told: told(0, 0) and defect_map(load_inspector(settings)[0].classifier, folder, record)
-        )
+        settings, number = self._session.settings, record.provenance.recipe
+
+        def work(_told: Told) -> QImage:
+            return defect_map(load_inspector(for_recipe(settings, number))[0].classifier, folder, record)
+
+        self._work.start(translate("live", "defect map"), work)
 
     def close_page(self) -> None:
         """Nothing is left running."""
