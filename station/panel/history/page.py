@@ -76,6 +76,10 @@ class HistoryPage(QWidget):
             self.since.addItem(text, hours)
         self.look_up, self.gallery = QPushButton(translate("history", "Search")), QPushButton(translate("history", "Gallery"))
         self.gallery.setCheckable(True)
+        self.serial.setMinimumWidth(200)
+        for box in (self.since, self.verdict, self.kind, self.segment, self.score):
+            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+            box.setMinimumContentsLength(9 if box is self.segment else 7)
         top = QHBoxLayout()
         for widget in (self.serial, self.since, self.verdict, self.kind, self.segment, self.score, self.look_up, self.gallery):
             top.addWidget(widget, 1 if widget is self.serial else 0)

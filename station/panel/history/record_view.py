@@ -6,6 +6,8 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
 from station.archive.decided import segment_kinds
 from station.archive.reader import Row, read_record
+from station.classify.decision import Thresholds
+from station.domain import Reason
 from station.errors import ImageError, LocateError
 from station.panel.card import Facts, Table, label, titled
 from station.panel.live.strip_view import StripView
@@ -110,7 +112,16 @@ class RecordView(QWidget):
             quality="–" if q is None else f"{q.mean_dn:.0f} · {q.sharpness:.3f}",
             ring="–" if ring is None else f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f}",
             steps=" · ".join("–" if ms is None else f"{ms:.0f}" for ms in steps),
-            limits=p.limits.replace(", ", "\n"),
+            limits="\n".join(_limits(p.thresholds)),
             model=f"{p.model_version} · {p.recipe}",
             origin=f"{data(record.origin)} · {data(record.purpose)}",
         )
+
+
+def _limits(t: Thresholds) -> list[str]:
+    lines = [f"{data(Reason.HOLE)} {t.hole:.2f}", f"{data(Reason.MISSING_WELD)} {t.missing_weld:.2f}"]
+    if t.segments:
+        lines.append(", ".join(f"{number}: {limit:g}" for number, limit in t.segments))
+    if t.hole_min_mm or t.missing_min_mm:
+        lines.append(f"≥ {t.hole_min_mm:g} mm · ≥ {t.missing_min_mm:g} mm")
+    return lines

@@ -95,7 +95,9 @@ def _overlay(painter: QPainter, d: Drawn, center: QPointF, radius: float, half: 
         _arc(painter, center, outer + 7, finding.start_deg, finding.end_deg)
         at = _at(center, outer + 34, (finding.start_deg + finding.end_deg) / 2)
         text = f"{data(finding.kind)}\n{finding.length_mm:.2f} mm"
-        box = QRectF(at.x() - 55, at.y() - 18, 110, 36)
+        room = painter.viewport()  # a label is moved rather than cut
+        x, y = min(max(at.x(), 50), room.width() - 50), min(max(at.y(), 18), room.height() - 18)
+        box = QRectF(x - 55, y - 18, 110, 36)
         painter.fillRect(painter.boundingRect(box, int(Qt.AlignmentFlag.AlignCenter), text), QColor(16, 18, 20, 170))
         painter.setPen(QColor("#ffcf4a"))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
