@@ -21,7 +21,7 @@ from station.domain import Frame, Origin
 from station.events import Counts, PartEvent, Preview, StatusEvent
 from station.imagefile import read_image
 from station.panel.app import open_window
-from station.panel.window import Window
+from station.panel.window import PAGES, Window
 from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, TEST_F32, TEST_U32, pack_window
 from station.preview import make_preview
 from station.recipe import prepare
@@ -72,11 +72,13 @@ def soak(folder: Path, parts: int) -> list[Level]:
             if number % 10 == 0:
                 publisher.show(replace(events[2], inspection_id=number))
             if number % 40 == 0:
-                window.go(number // 40 % 6)
+                window.go(number // 40 % len(PAGES))
             if number % 10 == 0:
                 _live(30)
             if number % (parts // ROUNDS) == 0:
                 window.speak("de" if window.session.parts and number // (parts // ROUNDS) % 2 else "en")
+                for index in range(len(PAGES)):
+                    window.go(index)
                 _until_heard(window, number)
                 levels.append(Level.now())
     finally:

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from models.crops import IGNORED, OK
 from models.labelled import LabelledStrip, read_lot
 from models.measures import Counts, count
-from station.classify.decision import Thresholds, segment_kind
+from station.classify.decision import segment_kind
 from station.classify.drift import DriftWatch, Reference
 from station.classify.onnx import Classifier
+from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_PX, SEGMENTS
 from station.vision.unwrap import segments
 

@@ -13,8 +13,8 @@ from models.crops import HOLE, IGNORED, OK, Crops
 from models.labelled import crop_label, defects_of, frames, read_labels
 from models.measures import refused
 from models.scores import class_scores
-from station.classify.decision import Thresholds
 from station.classify.onnx import CLASSES, Classifier
+from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_DEG, SEGMENTS, Inspection, Verdict
 from station.inspection import Inspector
 from station.vision.unwrap import segments, unwrap

@@ -19,8 +19,8 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 from models.errors import LearningError
 from models.network import STATISTICS, WeldNet
 from models.ring import RingNet
-from station.classify.decision import Thresholds
 from station.classify.onnx import CLASSES, Classifier, RingNetwork
+from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_PX
 from station.vision.polar import COLUMNS, ROWS
 

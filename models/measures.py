@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.crops import HOLE, MISSING, OK
-from station.classify.decision import Thresholds
+from station.classify.thresholds import Thresholds
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

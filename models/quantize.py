@@ -16,8 +16,8 @@ from models.crops import OK, Crops
 from models.errors import LearningError
 from models.measures import count, refused
 from models.scores import class_scores
-from station.classify.decision import Thresholds
 from station.classify.onnx import Classifier
+from station.classify.thresholds import Thresholds
 
 CALIBRATION_CROPS = 400
 LOSS_F2 = 0.003

@@ -21,8 +21,8 @@ from models.network import WeldNet
 from models.novelty import describe, distances, limit, part_distances
 from models.rendered import read_rendered
 from models.scores import class_scores
-from station.classify.decision import Thresholds
 from station.classify.onnx import Classifier
+from station.classify.thresholds import Thresholds
 
 RENDERED = "The network has seen rendered images only."
 FINE_TUNED = "Fine-tuned on a line's own labelled images, those of other parts held out."

@@ -1,7 +1,7 @@
 """Command line of the station."""
 
 import argparse
-import asyncio
+import gc
 import logging
 import os
 import signal
@@ -95,8 +95,12 @@ def _engine(arguments: argparse.Namespace) -> int:
 def _panel(arguments: argparse.Namespace) -> int:
     if hasattr(os, "SCHED_IDLE"):  # the window, also while it opens, takes the time that the engine leaves
         os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads would spin
+    gc.disable()  # there is nothing to collect while it opens
     from station.panel.app import run_panel
 
+    gc.freeze()
+    gc.enable()
     return run_panel(arguments.settings)
 
 
@@ -144,6 +148,8 @@ def _registers(arguments: argparse.Namespace) -> int:
 
 
 def _line(arguments: argparse.Namespace) -> int:
+    import asyncio
+
     from station.plc.simulated.run import LineRun, run_line
 
     a = arguments

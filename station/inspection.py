@@ -4,9 +4,10 @@ from time import perf_counter
 
 import numpy as np
 
-from station.classify.decision import Thresholds, findings, mean_of, near_threshold, refused_kinds
+from station.classify.decision import findings, mean_of, near_threshold, refused_kinds
 from station.classify.drift import read_reference
 from station.classify.onnx import LOOK, Classifier, RingNetwork
+from station.classify.thresholds import Thresholds
 from station.domain import Image, Inspection, Reason, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
 from station.settings import ModelSettings, QualitySettings, WeldSettings

@@ -9,7 +9,7 @@ from datetime import datetime
 
 from pydantic import TypeAdapter
 
-from station.classify.decision import Thresholds
+from station.classify.thresholds import Thresholds
 from station.domain import Inspection, Origin, Purpose, Verdict
 
 FORMAT = 2

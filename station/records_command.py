@@ -1,4 +1,7 @@
-"""`weldgate records`: finds, verifies, prunes and exports, for people and scripts."""
+"""`weldgate records`: finds, verifies, prunes and exports, for people and scripts.
+
+What a command needs is imported by it: every command, the window above all, is to start fast.
+"""
 
 import argparse
 import sys
@@ -6,11 +9,13 @@ from collections.abc import Callable
 from datetime import UTC, datetime
 from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from station.archive.export import FORMATS
-from station.archive.journal import verify_journal
-from station.archive.reader import Row, Wanted, find, read_records, verify
+from station.archive.forms import FORMATS
 from station.errors import RecordError
+
+if TYPE_CHECKING:
+    from station.archive.reader import Row, Wanted
 
 
 def add_commands(records: argparse.ArgumentParser) -> None:
@@ -59,7 +64,9 @@ def _time(text: str) -> datetime:
     return when.replace(tzinfo=UTC) if when.tzinfo is None else when.astimezone(UTC)
 
 
-def _wanted(a: argparse.Namespace) -> Wanted:
+def _wanted(a: argparse.Namespace) -> "Wanted":
+    from station.archive.reader import Wanted
+
     score = 0.05 if a.segment is not None and a.score is None else a.score
     return Wanted(
         serial=a.serial,
@@ -75,13 +82,15 @@ def _wanted(a: argparse.Namespace) -> Wanted:
 
 
 def _list(arguments: argparse.Namespace) -> int:
+    from station.archive.reader import find
+
     rows = find(arguments.folder, _wanted(arguments))
     for row in rows:
         print(_line(row))
     return 0
 
 
-def _line(row: Row) -> str:
+def _line(row: "Row") -> str:
     late = {True: "", False: "not shown to the PLC", None: "unknown whether the PLC saw it"}[row.shown_to_plc]
     notes = [row.reason or "", "" if row.purpose == "part" else row.purpose, late if row.purpose != "test" else ""]
     notes.append("" if row.frame_state in ("kept", "none") else f"picture {row.frame_state}")
@@ -91,6 +100,9 @@ def _line(row: Row) -> str:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
+    from station.archive.journal import verify_journal
+    from station.archive.reader import find, verify
+
     bad = 0
     for name, problem in chain(verify(arguments.folder), verify_journal(arguments.folder)):
         bad += 1
@@ -112,6 +124,7 @@ def _prune(arguments: argparse.Namespace) -> int:
 
 def _export(arguments: argparse.Namespace) -> int:
     from station.archive.export import export
+    from station.archive.reader import read_records
 
     if not arguments.target.resolve().parent.is_dir():
         raise RecordError(f"{arguments.target}: its folder does not exist")
@@ -124,6 +137,7 @@ def _export(arguments: argparse.Namespace) -> int:
 
 
 def _report(arguments: argparse.Namespace) -> int:
+    from station.archive.reader import read_records
     from station.report.page import report
     from station.report.pdf import write_pdf
     from station.report.truth import read_truth

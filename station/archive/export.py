@@ -16,7 +16,6 @@ from station.errors import ImageError, LocateError, RecordError
 from station.imagefile import encode_png, read_image
 from station.vision.unwrap import segments, unwrap
 
-FORMATS = ("csv", "json", "parquet", "dataset", "reviewed", "dfq")
 CLASS_FOLDERS = {None: "ok", Reason.HOLE: "hole", Reason.MISSING_WELD: "missing_weld"}
 SEPARATOR, ADDITIONAL = "\x0f", "\x14"
 """Q-DAS ASCII transfer format: between characteristics, and between a value and what belongs to it."""

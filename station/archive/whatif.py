@@ -7,7 +7,8 @@ Scores near the old threshold were seen twice (mirrored), others once: close to 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from station.classify.decision import Thresholds, refused_kinds
+from station.classify.decision import refused_kinds
+from station.classify.thresholds import Thresholds
 from station.domain import Purpose, Reason, Verdict
 from station.records import Record
 from station.settings import QualitySettings

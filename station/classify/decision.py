@@ -1,10 +1,10 @@
 """Scores, defect maps and thresholds to findings and verdict; pure."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import exp, log, pi
 
 from station.classify.extent import Extent, Map, extents, whole_map
+from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_DEG, SEGMENTS, STRIP_COLUMNS, STRIP_ROWS, Finding, Reason, Ring, SegmentScores
 
 KINDS = (Reason.HOLE, Reason.MISSING_WELD)
@@ -12,27 +12,6 @@ KINDS = (Reason.HOLE, Reason.MISSING_WELD)
 JOIN_MM = {Reason.HOLE: 0.0, Reason.MISSING_WELD: 1.0}
 """A missing weld whose joint is hard to see for less than this is one; two holes side by side are two."""
 DEG_PER_PX = 360.0 / STRIP_COLUMNS
-
-
-@dataclass(frozen=True, slots=True)
-class Thresholds:
-    """A segment is NOK from these probabilities on; findings shorter than their kind's least length are told, and tolerated."""
-
-    hole: float
-    missing_weld: float
-    segments: tuple[tuple[int, float], ...] = ()
-    """Number, 1 to 21, and probability of either defect, of segments with a limit of their own."""
-    hole_min_mm: float = 0.0
-    missing_min_mm: float = 0.0
-
-    def of(self, index: int) -> "Thresholds":
-        """As they are for one segment, 0 to 20."""
-        own = dict(self.segments).get(index + 1)
-        return self if own is None else Thresholds(own, own)
-
-    def least_mm(self, kind: Reason) -> float:
-        """Of a kind."""
-        return self.hole_min_mm if kind is Reason.HOLE else self.missing_min_mm
 
 
 def segment_kind(scores: SegmentScores, thresholds: Thresholds) -> Reason | None:

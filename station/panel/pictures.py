@@ -1,22 +1,10 @@
-"""Pictures for the window: of what was just seen, and of kept records."""
+"""Pictures of what was just seen."""
 
-from pathlib import Path
-
-import numpy as np
 from PySide6.QtGui import QImage
 
-from station.archive.decided import segment_kinds
-from station.classify.onnx import Classifier
-from station.domain import STRIP_COLUMNS, Image
-from station.errors import ImageError
 from station.events import PartEvent, Preview
-from station.imagefile import read_image
 from station.panel.live.weld_view import Drawn
-from station.preview import make_preview
 from station.records import Record
-from station.vision.unwrap import segments, unwrap
-
-HOLE_RGB, MISSING_RGB = (255, 60, 50), (255, 190, 40)
 
 
 def drawn(preview: Preview, part: PartEvent | None) -> Drawn:
@@ -36,36 +24,3 @@ def strip_image(preview: Preview) -> QImage | None:
 def nok_scores(record: Record) -> tuple[float, ...]:
     """Score of NOK of each segment."""
     return tuple(s.nok for s in record.inspection.scores)
-
-
-def kept_frame(folder: Path, record: Record) -> Image:
-    """The frame of a record (H, W) uint8. Raises ImageError saying why there is none."""
-    if record.frame_file is None:
-        raise ImageError("no picture came")
-    if not (folder / record.frame_file).exists():
-        raise ImageError("its picture is no longer kept")
-    return read_image(folder / record.frame_file)
-
-
-def of_record(folder: Path, record: Record) -> tuple[Drawn, QImage | None]:
-    """Picture and strip of a record, as it was judged. Raises ImageError."""
-    preview = make_preview(record.inspection_id, kept_frame(folder, record), record.inspection.ring)
-    nok = tuple(kind is not None for kind in segment_kinds(record))
-    image, inspection = QImage.fromData(preview.frame_jpeg), record.inspection
-    return Drawn(image, preview.scale, preview.origin_px, inspection.ring, nok, inspection.findings), strip_image(preview)
-
-
-def defect_map(classifier: Classifier, folder: Path, record: Record) -> QImage:
-    """Where the network sees holes (red) and missing weld (yellow), to lay over the strip. Raises ImageError, ModelError."""
-    if record.inspection.ring is None:
-        raise ImageError("no weld was found in it")
-    maps = classifier(segments(unwrap(kept_frame(folder, record), record.inspection.ring))).maps  # (21, 2, 32, 32)
-    whole = np.concatenate(list(maps), axis=2)  # (2, 32, 672)
-    layer = np.zeros((*whole.shape[1:], 4), np.uint8)
-    for channel, rgb in ((whole[1], MISSING_RGB), (whole[0], HOLE_RGB)):
-        strong = channel > np.maximum(layer[..., 3] / 200, 0.05)
-        layer[strong, :3] = rgb[::-1]
-        layer[strong, 3] = (channel[strong] * 200).astype(np.uint8)
-    height, width = layer.shape[:2]
-    image = QImage(layer.data, width, height, width * 4, QImage.Format.Format_ARGB32)
-    return image.scaledToWidth(STRIP_COLUMNS // 2)

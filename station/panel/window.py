@@ -1,7 +1,10 @@
-"""The shell: header, a button for each page, the page. Language and theme are changed by building the pages anew from the session."""
+"""The shell: header, a button for each page, the page.
+
+A page is made when it is first looked at, so that the window opens fast; language and theme are changed by making pages anew from
+the session.
+"""
 
 from collections.abc import Callable
-from typing import Protocol
 
 from PySide6.QtCore import QEvent, QObject, QTimer
 from PySide6.QtGui import QCloseEvent, QKeySequence, QShortcut
@@ -19,14 +22,10 @@ from PySide6.QtWidgets import (
 
 from station.domain import Origin
 from station.panel import theme, words
-from station.panel.alarms.page import AlarmsPage
 from station.panel.card import label, scrolled
-from station.panel.history.page import HistoryPage
-from station.panel.line.page import LinePage
 from station.panel.live.page import LivePage
+from station.panel.page import Page
 from station.panel.session import Session
-from station.panel.setup.page import SetupPage
-from station.panel.statistics.page import StatisticsPage
 from station.panel.words import data, translate
 from station.plc.alarms import TEXTS
 
@@ -34,11 +33,37 @@ AGE_MS = 500
 NAV_PX, HEADER_PX = 170, 56
 
 
-class Page(Protocol):
-    """What the shell needs of a page."""
+def _history(session: Session) -> Page:
+    from station.panel.history.page import HistoryPage
 
-    def close_page(self) -> None:
-        """Nothing is left running."""
+    return HistoryPage(session)
+
+
+def _statistics(session: Session) -> Page:
+    from station.panel.statistics.page import StatisticsPage
+
+    return StatisticsPage(session)
+
+
+def _line(session: Session) -> Page:
+    from station.panel.line.page import LinePage
+
+    return LinePage(session)
+
+
+def _alarms(session: Session) -> Page:
+    from station.panel.alarms.page import AlarmsPage
+
+    return AlarmsPage(session)
+
+
+def _setup(session: Session) -> Page:
+    from station.panel.setup.page import SetupPage
+
+    return SetupPage(session)
+
+
+PAGES: tuple[Callable[[Session], Page], ...] = (LivePage, _history, _statistics, _line, _alarms, _setup)
 
 
 class Window(QMainWindow):
@@ -50,43 +75,46 @@ class Window(QMainWindow):
         self.setWindowTitle("weldgate")
         self.setMinimumSize(1180, 720)
         self.resize(1280, 800)
-        self._pages: list[QWidget] = []
+        self._pages: dict[int, Page] = {}
+        """Those that were looked at."""
         self._build(0)
         session.status_changed.connect(self._on_status)
         session.user_changed.connect(self._on_user)
         self._ageing = QTimer(self)
         self._ageing.timeout.connect(self._on_status)
         self._ageing.start(AGE_MS)
-        for index in range(len(self._pages)):
+        for index in range(len(PAGES)):
             QShortcut(QKeySequence(f"F{index + 1}"), self, lambda i=index: self.go(i))
 
     def _build(self, chosen: int) -> None:
         """All widgets in the language and theme in use."""
-        made: list[tuple[str, Callable[[Session], QWidget]]] = [
-            (translate("window", "Live"), LivePage),
-            (translate("window", "History"), HistoryPage),
-            (translate("window", "Statistics"), StatisticsPage),
-            (translate("window", "Line"), LinePage),
-            (translate("window", "Alarms"), AlarmsPage),
-            (translate("window", "Setup"), SetupPage),
+        self._names = [
+            translate("window", "Live"),
+            translate("window", "History"),
+            translate("window", "Statistics"),
+            translate("window", "Line"),
+            translate("window", "Alarms"),
+            translate("window", "Setup"),
         ]
-        self._stack, self._buttons = QStackedWidget(), QButtonGroup(self)
+        self._stack = QStackedWidget()
         nav = QFrame()
+        self._buttons = QButtonGroup(nav)
         nav.setObjectName("nav")
         nav.setFixedWidth(NAV_PX)
         column = QVBoxLayout(nav)
         column.setContentsMargins(0, 6, 0, 6)
         column.setSpacing(0)
-        self._names, self._pages = [name for name, _ in made], []
-        for index, (name, page) in enumerate(made):
+        self._places: list[QStackedWidget] = []
+        for index, name in enumerate(self._names):
             button = QPushButton(name)
             button.setObjectName("nav")
             button.setCheckable(True)
             button.setToolTip(f"F{index + 1}")
             self._buttons.addButton(button, index)
             column.addWidget(button)
-            self._pages.append(page(self.session))
-            self._stack.addWidget(scrolled(self._pages[-1]))
+            place = QStackedWidget()
+            self._places.append(place)
+            self._stack.addWidget(place)
         column.addStretch(1)
         self._buttons.idClicked.connect(self.go)
         body = QWidget()
@@ -130,12 +158,15 @@ class Window(QMainWindow):
         return header
 
     @property
-    def page(self) -> QWidget:
+    def page(self) -> Page:
         """The page that is shown."""
         return self._pages[self._stack.currentIndex()]
 
     def go(self, index: int) -> None:
         """Show a page: 0 live, 1 history, 2 statistics, 3 line, 4 alarms, 5 setup."""
+        if index not in self._pages:
+            self._pages[index] = PAGES[index](self.session)
+            self._places[index].addWidget(scrolled(self._pages[index]))
         self._stack.setCurrentIndex(index)
         self._buttons.button(index).setChecked(True)
 
@@ -185,11 +216,11 @@ class Window(QMainWindow):
         return super().eventFilter(watched, event)
 
     def _close_pages(self) -> None:
-        for page in self._pages:
-            page.close_page()  # type: ignore[attr-defined]
+        for page in self._pages.values():
+            page.close_page()
             page.setParent(None)
             page.deleteLater()
-        self._pages = []
+        self._pages = {}
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
         """Stop timers, work and channel."""
@@ -197,7 +228,7 @@ class Window(QMainWindow):
         if app is not None:
             app.removeEventFilter(self)
         self._ageing.stop()
-        for page in self._pages:
-            page.close_page()  # type: ignore[attr-defined]
+        for page in self._pages.values():
+            page.close_page()
         self.session.close()
         super().closeEvent(event)

@@ -10,8 +10,8 @@ from models.export import Contract, export, export_ring, read_network
 from models.network import STATISTICS, WeldNet
 from models.ring import RingNet
 from models.ring_pair import pair_rings
-from station.classify.decision import Thresholds
 from station.classify.onnx import Classifier, RingNetwork
+from station.classify.thresholds import Thresholds
 from tests.conftest import RING_MODEL
 
 

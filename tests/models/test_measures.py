@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from models.crops import HOLE, MISSING, OK
 from models.measures import Counts, calibration_error, choose_thresholds, count, refused
 from models.novelty import describe, distances, limit, part_distances
-from station.classify.decision import Thresholds, segment_kind
+from station.classify.decision import segment_kind
+from station.classify.thresholds import Thresholds
 from station.domain import SegmentScores
 from station.report.truth import interval
 

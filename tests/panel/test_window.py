@@ -19,7 +19,7 @@ from station.panel import theme
 from station.panel.app import open_window
 from station.panel.live.page import LivePage
 from station.panel.setup.page import SetupPage
-from station.panel.window import HEADER_PX, NAV_PX, Window
+from station.panel.window import HEADER_PX, NAV_PX, PAGES, Window
 from station.plc.alarms import Alarm
 from station.plc.registers import Offline
 from station.preview import make_preview
@@ -64,7 +64,8 @@ def window(path: Path, qtbot: QtBot) -> Iterator[Window]:
 
 
 def live(window: Window) -> LivePage:
-    page = window._pages[0]
+    window.go(0)
+    page = window.page
     assert isinstance(page, LivePage)
     return page
 
@@ -177,12 +178,13 @@ def test_every_page_fits_the_screen_in_both_languages(window: Window, size: tupl
     window.resize(*size)
     for language in ("en", "de"):
         window.speak(language)
-        for index, page in enumerate(window._pages):
+        for index in range(len(PAGES)):
             window.go(index)
+            page = window.page
             hint = page.minimumSizeHint()
             assert hint.width() <= size[0] - NAV_PX, page
             assert hint.height() <= size[1] - HEADER_PX, page
-        setup = window._pages[5]
+        setup = window.page
         assert isinstance(setup, SetupPage)
         for tab in (setup.login, setup.camera, setup.recipe, setup.masters, setup.people, setup.journal):
             assert tab.minimumSizeHint().width() <= size[0] - NAV_PX - 20, tab
@@ -218,13 +220,17 @@ def test_pages_built_anew_leave_none_behind(window: Window, qtbot: QtBot) -> Non
         qtbot.wait(50)
         return len(QApplication.allWidgets())
 
-    window.speak("de")
-    window.speak("en")
+    def look_at_all() -> None:
+        for language in ("de", "en"):
+            window.speak(language)
+            for index in range(len(PAGES)):
+                window.go(index)
+
+    look_at_all()
     before = widgets()
     start = time.monotonic()
     for _ in range(3):
-        window.speak("de")
-        window.speak("en")
+        look_at_all()
     assert widgets() <= before, f"after {time.monotonic() - start:.1f} s"
 
 

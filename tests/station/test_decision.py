@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from station.classify.decision import Thresholds, findings, mean_of, near_threshold, refused_kinds, segment_kind
+from station.classify.decision import findings, mean_of, near_threshold, refused_kinds, segment_kind
 from station.classify.extent import CELL_PX, CELLS, Map
+from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, Ring, SegmentScores
 
 OK, HOLE, GONE = SegmentScores(0.98, 0.01, 0.01), SegmentScores(0.1, 0.8, 0.1), SegmentScores(0.1, 0.1, 0.8)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from station.__main__ import main
-from station.archive.export import FORMATS
+from station.archive.forms import FORMATS
 from station.archive.prune import Housekeeping, prune, sampled
 from station.archive.reader import find, read_records, verify
 from station.archive.room import Room

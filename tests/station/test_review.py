@@ -15,7 +15,7 @@ from station.archive.room import Room
 from station.archive.statistics import shift_of, summarise
 from station.archive.whatif import what_if
 from station.archive.writer import Archive
-from station.classify.decision import Thresholds
+from station.classify.thresholds import Thresholds
 from station.condition import Seen, alarms, health
 from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Reason, Verdict
 from station.plc.alarms import Alarm

@@ -3,11 +3,12 @@
 from datetime import datetime
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.journal import Entry, Kind, append, entries
 from station.errors import RecordError
 from station.panel.card import Table, label
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 from station.plc.alarms import TEXTS
@@ -16,7 +17,7 @@ SHOWN = 200
 REFRESH_MS = 2000
 
 
-class AlarmsPage(QWidget):
+class AlarmsPage(Page):
     """Follows the journal."""
 
     def __init__(self, session: Session) -> None:

@@ -15,7 +15,8 @@ from station.errors import ImageError, LocateError, RecordError
 from station.panel.card import label
 from station.panel.history.filmstrip import Filmstrip
 from station.panel.history.record_view import RecordView
-from station.panel.pictures import of_record
+from station.panel.kept import of_record
+from station.panel.page import Page
 from station.panel.session import FILM, THUMB_PX, Session
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
@@ -25,7 +26,7 @@ GALLERY = 60
 """Pictures read for a gallery."""
 
 
-class HistoryPage(QWidget):
+class HistoryPage(Page):
     """Reads the archive; the engine need not run."""
 
     def __init__(self, session: Session) -> None:

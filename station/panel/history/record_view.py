@@ -6,13 +6,14 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
 from station.archive.decided import segment_kinds
 from station.archive.reader import Row, read_record
-from station.classify.decision import Thresholds
+from station.classify.thresholds import Thresholds
 from station.domain import Reason
 from station.errors import ImageError, LocateError
 from station.panel.card import Facts, Table, label, titled
+from station.panel.kept import of_record
 from station.panel.live.strip_view import StripView
 from station.panel.live.weld_view import WeldView
-from station.panel.pictures import nok_scores, of_record
+from station.panel.pictures import nok_scores
 from station.panel.words import data, translate
 from station.records import Record
 

@@ -6,11 +6,12 @@ from datetime import datetime
 from enum import IntFlag
 
 from PySide6.QtCore import Qt, QTimer
-from PySide6.QtWidgets import QComboBox, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout
 
 from station.errors import RecordError
 from station.panel import theme
 from station.panel.card import Table, label, titled
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 from station.plc.buslog import Edge, tail_bus
@@ -22,7 +23,7 @@ EDGES = 400
 REFRESH_MS = 500
 
 
-class LinePage(QWidget):
+class LinePage(Page):
     """Follows the status events and the bus recorder's file."""
 
     def __init__(self, session: Session) -> None:

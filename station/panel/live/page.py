@@ -13,17 +13,17 @@ from station.panel.live.lamp_state import lamp
 from station.panel.live.strip_view import StripView
 from station.panel.live.verdict_lamp import VerdictLamp
 from station.panel.live.weld_view import WeldView
-from station.panel.pictures import defect_map, drawn, nok_scores, strip_image
+from station.panel.page import Page
+from station.panel.pictures import drawn, nok_scores, strip_image
 from station.panel.session import Session
 from station.panel.words import translate
 from station.panel.work import Told, WorkBar
-from station.recipe import load_inspector
 from station.settings import for_recipe
 
 AGE_MS = 200
 
 
-class LivePage(QWidget):
+class LivePage(Page):
     """Built from the session; follows it."""
 
     def __init__(self, session: Session) -> None:
@@ -65,6 +65,7 @@ class LivePage(QWidget):
         self._on_status()
         self._on_part()
         self._on_preview()
+        self.age()
 
     def _lay_out(self) -> None:
         side = QWidget()
@@ -171,6 +172,9 @@ class LivePage(QWidget):
         settings, number = self._session.settings, record.provenance.recipe
 
         def work(_told: Told) -> QImage:
+            from station.panel.kept import defect_map  # only who asks pays for the network
+            from station.recipe import load_inspector
+
             return defect_map(load_inspector(for_recipe(settings, number))[0].classifier, folder, record)
 
         self._work.start(translate("live", "defect map"), work)

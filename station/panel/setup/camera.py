@@ -7,6 +7,7 @@ from station.errors import RecordError, SettingsError
 from station.events import LookEvent
 from station.panel.card import Facts, label, titled
 from station.panel.live.weld_view import Drawn, WeldView
+from station.panel.page import Page
 from station.panel.pictures import drawn
 from station.panel.session import Session
 from station.panel.setup.change import MIN_REASON, change
@@ -18,7 +19,7 @@ from station.settings import PylonSettings
 from station.users import Level
 
 
-class CameraPage(QWidget):
+class CameraPage(Page):
     """Pictures are taken in service mode: READY is 0, nothing is recorded."""
 
     def __init__(self, session: Session) -> None:

@@ -3,11 +3,12 @@
 from datetime import datetime
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout
 
 from station.archive.journal import Kind, entries
 from station.errors import RecordError
 from station.panel.card import Table, label
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 
@@ -15,7 +16,7 @@ SHOWN = 500
 REFRESH_MS = 2000
 
 
-class JournalPage(QWidget):
+class JournalPage(Page):
     """Follows the journal."""
 
     def __init__(self, session: Session) -> None:

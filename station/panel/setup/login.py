@@ -6,12 +6,13 @@ from PySide6.QtWidgets import QComboBox, QFormLayout, QGridLayout, QHBoxLayout, 
 
 from station.errors import LoginError, RecordError
 from station.panel.card import label, titled
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 from station.users import Level, log_in, save_user, users
 
 
-class LoginPage(QWidget):
+class LoginPage(Page):
     """Log in and out."""
 
     def __init__(self, session: Session) -> None:

@@ -3,12 +3,13 @@
 from datetime import datetime, timedelta
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Row, Wanted, find
 from station.domain import Purpose
 from station.errors import RecordError
 from station.panel.card import Table, label, titled
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 from station.users import Level
@@ -17,7 +18,7 @@ REFRESH_MS = 1500
 LOG = 200
 
 
-class MastersPage(QWidget):
+class MastersPage(Page):
     """Follows the archive."""
 
     def __init__(self, session: Session) -> None:

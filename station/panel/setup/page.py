@@ -3,6 +3,7 @@
 from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from station.panel.card import scrolled
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.setup.camera import CameraPage
 from station.panel.setup.journal import JournalPage
@@ -13,7 +14,7 @@ from station.panel.setup.recipe import RecipePage
 from station.panel.words import translate
 
 
-class SetupPage(QWidget):
+class SetupPage(Page):
     """All but the login can be looked at by everybody; changes need their level."""
 
     def __init__(self, session: Session) -> None:

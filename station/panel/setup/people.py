@@ -6,12 +6,13 @@ from PySide6.QtWidgets import QComboBox, QFormLayout, QHBoxLayout, QLineEdit, QP
 
 from station.errors import LoginError, RecordError
 from station.panel.card import Table, label, titled
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 from station.users import Level, remove_user, save_user, users
 
 
-class PeoplePage(QWidget):
+class PeoplePage(Page):
     """Add, change, remove."""
 
     def __init__(self, session: Session) -> None:

@@ -5,10 +5,11 @@ from PySide6.QtWidgets import QComboBox, QGridLayout, QHBoxLayout, QLineEdit, QP
 
 from station.archive.reader import Wanted, find, read_words
 from station.archive.whatif import WhatIf, what_if
-from station.classify.decision import Thresholds
 from station.classify.onnx import Classifier
+from station.classify.thresholds import Thresholds
 from station.errors import ModelError, RecordError, SettingsError
 from station.panel.card import Table, label, titled
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.setup.change import MIN_REASON, change
 from station.panel.setup.field import NumberField, SegmentLimits
@@ -36,7 +37,7 @@ Values = tuple[dict[str, float], dict[int, float]]
 """Of the fields by key, of the single segments by number."""
 
 
-class RecipePage(QWidget):
+class RecipePage(Page):
     """Thresholds and limits of picture quality."""
 
     def __init__(self, session: Session) -> None:

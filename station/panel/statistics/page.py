@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QComboBox, QFileDialog, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QFileDialog, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Wanted, find, read_records, read_words
 from station.archive.statistics import Summary, summarise
@@ -12,6 +12,7 @@ from station.domain import Verdict
 from station.errors import RecordError
 from station.panel.card import Table, label, titled
 from station.panel.live.clock_face import ClockFace
+from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.statistics.charts import Chart
 from station.panel.words import data, translate
@@ -22,7 +23,7 @@ from station.report.page import report
 PARTS = (100, 300, 1000, 5000)
 
 
-class StatisticsPage(QWidget):
+class StatisticsPage(Page):
     """Reads the archive when it is looked at, and on demand."""
 
     def __init__(self, session: Session) -> None:
