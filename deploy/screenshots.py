@@ -120,10 +120,10 @@ def _people(window: Window) -> User:
 
 
 def _reviews(window: Window) -> None:
-    folder, nok = window.session.folder, [h.event.record for h in window.session.parts if h.event.record.verdict == "NOK"]
+    folder, nok = window.session.folder, [part.record for part in window.session.parts if part.record.verdict == "NOK"]
     for record in nok[-2:]:
-        give(folder, "Quentin Quality", record.inspection_id, "NOK", Opinion.RIGHT, "seen under the microscope")
-        give(folder, "Sam Setter", record.inspection_id, "NOK", Opinion.RIGHT)
+        give(folder, "Quentin Quality", True, record.inspection_id, "NOK", Opinion.RIGHT, "seen under the microscope")
+        give(folder, "Ada Admin", True, record.inspection_id, "NOK", Opinion.RIGHT)
 
 
 def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:

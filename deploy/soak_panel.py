@@ -6,6 +6,7 @@ import os
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -18,11 +19,11 @@ from deploy.demo import free_ports, shipped_parts, station_toml
 from station.archive.writer import Archive
 from station.channel import Publisher
 from station.domain import Frame, Origin
-from station.events import Counts, PartEvent, Preview, StatusEvent
+from station.events import PartEvent, Preview, StatusEvent
 from station.imagefile import read_image
 from station.panel.app import open_window
 from station.panel.window import PAGES, Window
-from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, TEST_F32, TEST_U32, pack_window
+from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, TEST_F32, TEST_U32, VerdictCode, pack_window
 from station.preview import make_preview
 from station.recipe import prepare
 from station.records import Part, Record
@@ -66,8 +67,8 @@ def soak(folder: Path, parts: int) -> list[Level]:
     try:
         for number in range(1, parts + 1):
             for status in events[0]:
-                publisher.send(status)
-            part = replace(events[1], record=replace(record, inspection_id=number))
+                publisher.send(replace(status, at_s=time.monotonic()))
+            part = replace(events[1], at_s=time.monotonic(), record=replace(record, inspection_id=number))
             publisher.send(part)
             if number % 10 == 0:
                 publisher.show(replace(events[2], inspection_id=number))
@@ -97,9 +98,10 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     record = archive.commit(archive.begin(frame), inspection, Part("SOAK", 1, Origin.SIMULATED), loaded.provenance, frame.grabbed_at)
     archive.close()
     nok = loaded.inspector.refused(inspection)
-    words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32}))
-    status = StatusEvent(True, "", Origin.SIMULATED, Counts(1, 2, 3), (0,) * COMMAND_WORDS, words)
-    part = PartEvent(record, nok, False, None, True, 5.0, 1.0)
+    words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1}))
+    now_s = time.monotonic()
+    status = StatusEvent(now_s, now_s, 0.0, True, "", Origin.SIMULATED, (0,) * COMMAND_WORDS, words)
+    part = PartEvent(now_s, record, nok, False, None, VerdictCode.NOK, 5.0, 1.0)
     return record, ([status] * STATUSES, part, make_preview(1, image, inspection.ring))
 
 
@@ -112,7 +114,7 @@ def _live(milliseconds: int) -> None:
 def _until_heard(window: Window, number: int) -> None:
     for _ in range(200):
         last = window.session.last
-        if last is not None and last.event.record.inspection_id == number:
+        if last is not None and last.record.inspection_id == number:
             return
         _live(20)
     raise TimeoutError("the window did not hear all parts")

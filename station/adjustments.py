@@ -2,10 +2,13 @@
 
 import json
 import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, TypeGuard
 
 from station.errors import SettingsError
+from station.filelock import FileLock
 
 SECTIONS = ("weld", "quality", "model")
 
@@ -62,6 +65,35 @@ def laid_over(raw: dict[str, Any], settings: Path) -> dict[str, Any]:
             recipe[section] = {**recipe.get(section, {}), **values}
         answer["recipes"] = {**recipes, number: recipe}
     return answer
+
+
+@contextmanager
+def editing(settings: Path) -> Iterator[None]:
+    """Nobody else changes anything meanwhile. Raises SettingsError if somebody does just now."""
+    path = path_of(settings).with_suffix(".lock")
+    try:
+        lock = FileLock(path)
+    except BlockingIOError:
+        raise SettingsError("another window saves just now; save again") from None
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None
+    with closing(lock):
+        yield
+
+
+def at(changes: Mapping[str, Any], place: Sequence[str]) -> object:
+    """The value at ("recipes", "1", "model", "hole_threshold"), or None."""
+    found: Any = changes
+    for name in place:
+        found = found.get(name) if isinstance(found, Mapping) else None
+    return found
+
+
+def put(changes: Mapping[str, Any], place: Sequence[str], value: object) -> dict[str, Any]:
+    """The same with another value there; None takes it out."""
+    name, rest = place[0], place[1:]
+    inner = put(changes.get(name, {}), rest, value) if rest else value
+    return {k: v for k, v in changes.items() if k != name} | ({} if inner is None or (inner == {} and rest) else {name: inner})
 
 
 def write(settings: Path, changes: dict[str, Any]) -> None:

@@ -6,21 +6,24 @@ import threading
 from collections.abc import Collection
 from pathlib import Path
 
-from station.archive.journal import Kind, append
+from station.archive.journal import Kind, append, entries
 from station.errors import RecordError
-from station.plc.alarms import TEXTS
+from station.plc.alarms import TEXTS, Alarm
 
 log = logging.getLogger("weldgate.alarms")
 
 MAX_WAITING = 1000
+LOOKED_AT = 2000
+"""Entries of the journal, the newest."""
 
 
 class AlarmLog:
     """Hears of all alarms that last, as often as one likes, and of each that passes."""
 
     def __init__(self, folder: Path) -> None:
+        """What lasted when the station went down lasts until it is seen to be over. Raises RecordError."""
         self._folder = folder
-        self._last: frozenset[int] = frozenset()
+        self._last = _open(folder)
         self._queue: queue.Queue[tuple[Kind, int, str] | None] = queue.Queue(MAX_WAITING)
         self._thread = threading.Thread(target=self._run, name="alarms", daemon=True)
         self._thread.start()
@@ -59,3 +62,11 @@ class AlarmLog:
                 append(self._folder, kind, "station", f"16#{code:04X}", after=what)
             except RecordError as error:
                 log.error("%s", error)
+
+
+def _open(folder: Path) -> frozenset[int]:
+    """Codes of lasting alarms that the journal tells of and that are not over in it."""
+    found: dict[int, bool] = {}
+    for entry in entries(folder, (Kind.ALARM, Kind.ALARM_OVER), limit=LOOKED_AT):
+        found.setdefault(int(entry.subject.removeprefix("16#"), 16), entry.kind is Kind.ALARM)
+    return frozenset(code for code, on in found.items() if on and code in list(Alarm))

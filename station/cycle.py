@@ -7,27 +7,26 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import replace
-from datetime import UTC, datetime
 from functools import partial
 
 from station.alarmlog import AlarmLog
 from station.answer import answer
-from station.archive.writer import Archive, Pending
+from station.archive.writer import Archive
 from station.camera.reconnecting import ReconnectingCamera
 from station.condition import Seen, alarms, health
-from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing, Verdict
-from station.errors import LineError, RecordError, WeldgateError
-from station.events import Counts, PartEvent, StatusEvent
+from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing
+from station.errors import LineError, WeldgateError
+from station.events import PartEvent, StatusEvent
 from station.listener import Listener
 from station.plc.handshake import ERROR_DEADLINE
 from station.plc.port import Command, Health, Line, Trigger
-from station.plc.registers import STATUS_START, Offline, Status, word
+from station.plc.registers import STATUS_START, Offline, Status, VerdictCode, word
 from station.preview import make_preview
 from station.recipe import Loaded
+from station.recorder import keep, mark_shown, unkept
 from station.records import Part, Record
 from station.released import Released
-from station.requests import Reload, Service
+from station.requests import Reload, ResetCounts, Service
 from station.service import Attention, drained, look
 from station.watch import Watch
 
@@ -63,20 +62,20 @@ class Cycle:
         self._listener, self._alarm_log = listener, alarm_log
         self._attention = Attention()
         self._settings_refused = False
-        self._status_s = 0.0
-        self._counts = Counts()
+        self._status_s, self._started_s, self._reloaded_s = 0.0, time.monotonic(), 0.0
 
     def run(self, stop: threading.Event) -> None:
         """Serve triggers until `stop`; closes the camera at the end."""
         try:
             while not stop.is_set():
                 self._camera.look_after()
-                self._attention.hear(self._listener.requests())
+                self._hear()
                 self._line.checked_in(self._health())
                 self._tell_status()
                 request = self._line.next_request(IDLE_S)
                 if isinstance(request, Trigger):
-                    self._guarded(partial(self._part, request), f"part of trigger {request.trigger_id} was not answered")
+                    if not self._guarded(partial(self._part, request), f"part of trigger {request.trigger_id} was not answered"):
+                        self._unanswered(request)
                 elif isinstance(request, Command):
                     self._line.command_done(request, self._load_recipe(request))
                 elif not self._attend():
@@ -84,12 +83,21 @@ class Cycle:
         finally:
             self._camera.close()
 
+    def _hear(self) -> None:
+        requests = self._listener.requests()
+        self._attention.hear(requests)
+        for request in requests:
+            if isinstance(request, ResetCounts):
+                self._line.reset_counts()
+                log.info("counters set back by %s", request.who)
+
     def _attend(self) -> bool:
         """What people ask for, once no part is in work. Whether there was anything to do."""
         status = Status(word(STATUS_START, self._line.windows()[1], "STATUS"))
         task, wanted = self._attention.due(status), self._attention.service.looking
         if isinstance(task, Reload):
             self._guarded(self._reload, "the settings were not read again")
+            self._reloaded_s = task.asked_s
         elif task is not None:
             self._guarded(partial(self._test_picture, task.master), "the test picture was not judged")
         elif wanted is not None and drained(status):
@@ -170,10 +178,12 @@ class Cycle:
         self._alarm_log.lasting(lasting)
         self._listener.event(
             StatusEvent(
+                at_s=now,
+                started_s=self._started_s,
+                reloaded_s=self._reloaded_s,
                 camera_there=self._camera.there,
                 camera_message=self._camera.message,
                 origin=self._origin,
-                counts=self._counts,
                 alarms=tuple(int(code) for code in lasting),
                 recipe=seen.recipe,
                 config_crc=seen.config_crc,
@@ -183,14 +193,23 @@ class Cycle:
             )
         )
 
-    def _guarded(self, work: Callable[[], None], failed: str) -> None:
-        """A fault nobody foresaw costs one part, not the station: the handshake answers ERROR at its deadline."""
+    def _guarded(self, work: Callable[[], None], failed: str) -> bool:
+        """A fault nobody foresaw costs one part, not the station: the handshake answers ERROR at its deadline. Whether all went well."""
         try:
             work()
         except LineError:
             raise
         except Exception:
             log.exception(failed)
+            return False
+        return True
+
+    def _unanswered(self, trigger: Trigger) -> None:
+        """No old verdict stays on the screen."""
+        self._alarm_log.passing(ERROR_DEADLINE, f"trigger {trigger.trigger_id}, {trigger.serial}")
+        part = Part(trigger.serial, trigger.trigger_id, self._origin)
+        record = unkept(Inspection.error(Reason.INTERNAL), part, self._loaded.provenance)
+        self._tell(None, PartEvent(time.monotonic(), record, (), False, None, VerdictCode.ERROR, 0.0, 0.0))
 
     def _part(self, trigger: Trigger) -> None:
         frame, inspection = self._take(trigger)
@@ -200,7 +219,8 @@ class Cycle:
         start = time.perf_counter()
         purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
         origin = self._origin if frame is None else frame.origin
-        record = self._record(Part(trigger.serial, trigger.trigger_id, origin, purpose), pending, inspection)
+        part = Part(trigger.serial, trigger.trigger_id, origin, purpose)
+        record = keep(self._archive, pending, inspection, part, self._loaded.provenance)
         record_ms = (time.perf_counter() - start) * 1000
         self._watch.part(record.inspection)
         if trigger.golden:
@@ -211,8 +231,6 @@ class Cycle:
         result = answer(trigger, record, nok, novel, self._watch.drifting, self._watch.trusted)
         shown = self._line.publish(result)
         publish_ms = (time.perf_counter() - start) * 1000
-        if not trigger.golden:
-            self._count(record.verdict if shown else Verdict.ERROR)
         if result.error_code or not shown:
             told = word(STATUS_START, self._line.windows()[1], "ERROR_CODE")
             code = result.error_code if shown else told or ERROR_DEADLINE
@@ -221,7 +239,7 @@ class Cycle:
             log.warning(
                 "part %d, %s: came too late, the PLC was not shown its verdict %s", record.inspection_id, record.serial, record.verdict
             )
-        self._mark(record, shown)
+        mark_shown(self._archive, record, shown)
         if novel:
             log.warning(
                 "part %d, %s: unlike the training images (distance %.2f); check light, focus and surface",
@@ -229,7 +247,8 @@ class Cycle:
                 record.serial,
                 record.inspection.novelty,
             )
-        self._tell(frame, PartEvent(record, nok, novel, self._watch.drift, shown, record_ms, publish_ms))
+        said = result.verdict if shown else VerdictCode.ERROR
+        self._tell(frame, PartEvent(time.monotonic(), record, nok, novel, self._watch.drift, said, record_ms, publish_ms))
 
     def _test_picture(self, master: str) -> None:
         """A picture of what lies there now, judged and recorded; the PLC is told nothing, the counters stand still."""
@@ -238,11 +257,13 @@ class Cycle:
         if frame is not None:
             inspection = self._judge(frame, inspection.timing)
         purpose = Purpose.GOLDEN if master else Purpose.TEST
-        record = self._record(Part(master, 0, self._origin if frame is None else frame.origin, purpose), pending, inspection)
+        part = Part(master, 0, self._origin if frame is None else frame.origin, purpose)
+        record = keep(self._archive, pending, inspection, part, self._loaded.provenance)
         if master:
             self._watch.master(record.serial, record.verdict)
-        self._mark(record, False)
-        self._tell(frame, PartEvent(record, *self._decided(record), self._watch.drift, False, 0.0, 0.0))
+        mark_shown(self._archive, record, False)
+        nok, novel = self._decided(record)
+        self._tell(frame, PartEvent(time.monotonic(), record, nok, novel, self._watch.drift, VerdictCode.NONE, 0.0, 0.0))
 
     def _decided(self, record: Record) -> tuple[tuple[bool, ...], bool]:
         """Which segments are refused, and whether the picture is unlike all training."""
@@ -254,12 +275,6 @@ class Cycle:
         if frame is not None:
             self._listener.preview(make_preview(event.record.inspection_id, frame.image, event.record.inspection.ring))
 
-    def _mark(self, record: Record, shown: bool) -> None:
-        try:
-            self._archive.mark_shown(record.inspection_id, shown)
-        except RecordError as error:
-            log.error("%s", error)
-
     def _take(self, trigger: Trigger) -> tuple[Frame | None, Inspection]:
         """The frame of this trigger's part; none if the trigger is over and another part may lie there."""
         if not self._line.in_work(trigger):
@@ -267,18 +282,6 @@ class Cycle:
         frame, inspection = self._grab()
         self._line.exposure_done(trigger)
         return frame, inspection
-
-    def _record(self, part: Part, pending: Pending, inspection: Inspection) -> Record:
-        """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
-        now, provenance = datetime.now(UTC), self._loaded.provenance
-        try:
-            return self._archive.commit(pending, inspection, part, provenance, now)
-        except RecordError as error:
-            log.error("%s", error)
-        except Exception:  # the gate must answer, and without a record never with a verdict
-            log.exception("the record could not be written")
-        failed = Inspection.error(Reason.RECORD_FAILED, inspection.ring, inspection.quality, inspection.timing)
-        return Record(0, part.serial, part.trigger_id, now, "", part.origin, None, None, failed, provenance, part.purpose)
 
     def _grab(self) -> tuple[Frame | None, Inspection]:
         """A frame, or why there is none; never with an exposure that somebody tries by hand."""
@@ -292,7 +295,3 @@ class Cycle:
         except Exception:  # the gate must answer: any fault is "not judged"
             log.exception("inspection failed")
             return Inspection.error(Reason.INTERNAL, timing=timing)
-
-    def _count(self, verdict: Verdict) -> None:
-        name = {Verdict.OK: "ok", Verdict.NOK: "nok", Verdict.ERROR: "error"}[verdict]
-        self._counts = replace(self._counts, **{name: getattr(self._counts, name) + 1})

@@ -7,13 +7,16 @@ from pydantic import ConfigDict
 
 from station.classify.drift import Drift
 from station.domain import Origin, Ring
-from station.plc.registers import STATUS_START, Offline, Status, word
+from station.plc.registers import BY_NAME, STATUS_START, Offline, Status, VerdictCode, word
 from station.records import Record
+
+SETTING_UP = -1
+"""Number of a picture that is not judged; a part whose record could not be written has 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Parts since the engine started."""
+    """Parts by what the PLC was told, since the engine started or the counters were set back."""
 
     ok: int = 0
     nok: int = 0
@@ -27,13 +30,18 @@ class Counts:
 
 @dataclass(frozen=True, slots=True)
 class StatusEvent:
-    """How the station stands; several a second."""
+    """How the station stands; several a second. Times are monotonic seconds, the same clock for all processes of the machine."""
 
+    at_s: float
+    """When it was sent."""
+    started_s: float
+    """When the engine started."""
+    reloaded_s: float
+    """`asked_s` of the last request to read the settings again that was dealt with, or 0."""
     camera_there: bool
     camera_message: str
     """Why the camera is not there, or empty."""
     origin: Origin
-    counts: Counts
     command_words: tuple[int, ...]
     status_words: tuple[int, ...]
     """Both windows of the register map, as the PLC has them."""
@@ -51,6 +59,12 @@ class StatusEvent:
         return Status(word(STATUS_START, self.status_words, "STATUS"))
 
     @property
+    def counts(self) -> Counts:
+        """As the PLC reads them."""
+        first = (BY_NAME[name].address - STATUS_START for name in ("COUNT_OK", "COUNT_NOK", "COUNT_ERROR"))
+        return Counts(*(self.status_words[i] << 16 | self.status_words[i + 1] for i in first))
+
+    @property
     def offline(self) -> Offline:
         """Why READY is 0."""
         return Offline(word(STATUS_START, self.status_words, "OFFLINE_REASON"))
@@ -60,14 +74,17 @@ class StatusEvent:
 class PartEvent:
     """One part judged, recorded and published."""
 
+    at_s: float
+    """Monotonic time at which it was sent."""
     record: Record
     seg_nok: tuple[bool, ...]
     novel: bool
     """The picture is unlike all training images: its verdict deserves less trust, and the line a look."""
     drift: Drift | None
     """How far the last parts look from the line's reference; None: not watched, or no part was judged yet."""
-    shown_to_plc: bool
-    """False: the result came too late or was refused; the PLC saw ERROR or nothing."""
+    told: VerdictCode
+    """What the PLC reads: ERROR also if the result came too late, TEST for a master or while the station may not be trusted, NONE for a
+    test picture."""
     record_ms: float
     publish_ms: float
     type: Literal["part"] = "part"
@@ -78,6 +95,7 @@ class Preview:
     """Picture for the window: may be dropped."""
 
     inspection_id: int
+    """`SETTING_UP` for a setting-up picture."""
     scale: float
     """Preview pixels per frame pixel."""
     origin_px: tuple[int, int]

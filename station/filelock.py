@@ -1,15 +1,15 @@
-"""A lock on a folder, held as long as the process lives; freed by the system if it dies."""
+"""A lock between processes, freed by the system if the one that holds it dies."""
 
 import sys
 from io import BufferedRandom
 from pathlib import Path
 
 
-class FolderLock:
-    """Raises BlockingIOError if another process holds the folder."""
+class FileLock:
+    """Held from the start until `close`. Raises BlockingIOError if another process holds it, else OSError if there can be no such file."""
 
-    def __init__(self, folder: Path) -> None:
-        self._file: BufferedRandom = (folder / "engine.lock").open("a+b")
+    def __init__(self, path: Path) -> None:
+        self._file: BufferedRandom = path.open("a+b")
         try:
             _lock(self._file)
         except OSError:

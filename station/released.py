@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from station.camera.port import Camera
 from station.errors import SettingsError
 from station.recipe import Loaded, prepare
-from station.settings import PylonSettings, Settings
+from station.settings import PylonSettings, Settings, for_recipe
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +35,10 @@ class Released:
         new, camera = self._again(), None
         if _which(new) != _which(self._settings):
             raise SettingsError("another camera cannot take over while the station runs; start it again")
+        known = {1, *self._settings.recipes}
+        for other in sorted({1, *new.recipes} - {number}):
+            if other not in known or for_recipe(new, other) != for_recipe(self._settings, other):
+                prepare(new, other)  # or the station would not start next time, or refuse the recipe when the PLC wants it
         loaded = prepare(new, number)
         if new.camera != self._settings.camera:
             camera = self._make_camera(new)

@@ -44,4 +44,13 @@ class Reload:
     type: Literal["reload"] = "reload"
 
 
-Request = TestPicture | Service | Reload
+@dataclass(frozen=True, slots=True)
+class ResetCounts:
+    """Set the counters back to 0."""
+
+    asked_s: float
+    who: str
+    type: Literal["reset counts"] = "reset counts"
+
+
+Request = TestPicture | Service | Reload | ResetCounts

@@ -8,7 +8,7 @@ import numpy as np
 
 from station.camera.reconnecting import ReconnectingCamera
 from station.errors import LocateError, ModelError
-from station.events import LookEvent, Preview
+from station.events import SETTING_UP, LookEvent, Preview
 from station.inspection import Inspector
 from station.plc.registers import Status
 from station.preview import make_preview
@@ -74,7 +74,7 @@ class Attention:
         for request in requests:
             if isinstance(request, Service):
                 self.service.heard(request)
-            else:
+            elif isinstance(request, TestPicture | Reload):
                 if not self._tasks:
                     self._since_s = time.monotonic()
                 self._tasks[request.type] = request
@@ -117,4 +117,4 @@ def look(camera: ReconnectingCamera, inspector: Inspector, wanted: Service) -> t
         ring,
         problem,
     )
-    return event, make_preview(0, frame.image, ring)
+    return event, make_preview(SETTING_UP, frame.image, ring)

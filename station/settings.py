@@ -4,7 +4,7 @@ from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from station.domain import Origin
 from station.errors import SettingsError
@@ -202,10 +202,17 @@ class ArchiveSettings(Section):
         return self
 
 
-class ChannelSettings(Section):
-    """Local channel between engine and panel (ZeroMQ); loopback by default."""
+def _loopback(address: IPv4Address | IPv6Address) -> IPv4Address | IPv6Address:
+    if not address.is_loopback:
+        raise ValueError("must be an address of this machine alone, as 127.0.0.1")
+    return address
 
-    host: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
+
+class ChannelSettings(Section):
+    """Local channel between engine and panel (ZeroMQ). It knows neither login nor encryption and carries times of this machine's clock:
+    loopback only."""
+
+    host: Annotated[IPv4Address | IPv6Address, AfterValidator(_loopback)] = IPv4Address("127.0.0.1")
     events_port: Port = 15551
     preview_port: Port = 15552
     requests_port: Port = 15553

@@ -2,7 +2,8 @@
 
 import csv
 import json
-from collections.abc import Iterable, Iterator
+import shutil
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
@@ -21,8 +22,13 @@ SEPARATOR, ADDITIONAL = "\x0f", "\x14"
 """Q-DAS ASCII transfer format: between characteristics, and between a value and what belongs to it."""
 
 
-def export(entries: Iterable[Listed], folder: Path, target: Path, form: str) -> Iterator[tuple[Path, str]]:
-    """Write readable records to `target`; yields the others as (file, problem). Raises RecordError, OSError."""
+def export(
+    entries: Iterable[Listed], folder: Path, target: Path, form: str, going: Callable[[], bool] = lambda: True
+) -> Iterator[tuple[Path, str]]:
+    """Write readable records to `target`; yields the others as (file, problem). Raises RecordError, OSError.
+
+    Crops are written while `going`, asked before each part, says so; else what was written is taken away again.
+    """
     if target.exists():
         raise RecordError(f"{target}: exists already; name another file or folder")
     good, bad = [], []
@@ -31,10 +37,12 @@ def export(entries: Iterable[Listed], folder: Path, target: Path, form: str) -> 
             bad.append((entry.path, entry.problem or "cannot be read"))
         else:
             good.append(entry)
-    if form == "dataset":
-        bad += list(_dataset(good, folder, target))
-    elif form == "reviewed":
-        bad += list(_reviewed(good, folder, target))
+    if form in ("dataset", "reviewed"):
+        try:
+            bad += list((_dataset if form == "dataset" else _reviewed)(good, folder, target, going))
+        except _Stopped:
+            shutil.rmtree(target)
+            return
     else:
         {"csv": _csv, "json": _json, "parquet": _parquet, "dfq": _dfq}[form](target, good)
     yield from bad
@@ -98,23 +106,34 @@ def _parquet(target: Path, entries: list[Listed]) -> None:
     parquet.write_table(Table.from_pylist([flat(entry) for entry in entries]), target)
 
 
-def _reviewed(entries: list[Listed], folder: Path, target: Path) -> Iterator[tuple[Path, str]]:
+class _Stopped(Exception):
+    """Nobody wants it any longer."""
+
+
+def _reviewed(entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool]) -> Iterator[tuple[Path, str]]:
     """The same of parts that two people agree on: where they say it was a false call, all crops are ok."""
     agreed = {number: review.agreed for number, review in reviews(folder).items()}
     for all_ok, opinion in ((False, Opinion.RIGHT), (True, Opinion.FALSE_CALL)):
-        yield from _dataset([e for e in entries if agreed.get(e.row.inspection_id) is opinion], folder, target, all_ok)
+        yield from _dataset([e for e in entries if agreed.get(e.row.inspection_id) is opinion], folder, target, going, all_ok)
     for entry in entries:
         if agreed.get(entry.row.inspection_id) is Opinion.MISSED:
             yield entry.path, "a defect was missed: nobody said in which segment, its crops are left out"
 
 
-def _dataset(entries: list[Listed], folder: Path, target: Path, all_ok: bool = False) -> Iterator[tuple[Path, str]]:
+def _dataset(
+    entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool], all_ok: bool = False
+) -> Iterator[tuple[Path, str]]:
     """ok, hole, missing_weld: crops by what the station found, for people to correct before anything is trained on them."""
     for name in CLASS_FOLDERS.values():
         (target / name).mkdir(parents=True, exist_ok=True)
     for entry in entries:
         record = entry.record
-        if record is None or record.inspection.ring is None or not record.inspection.scores or entry.row.frame_state != "kept":
+        if not going():
+            raise _Stopped
+        if record is None or record.inspection.ring is None or not record.inspection.scores:
+            continue  # nothing was judged
+        if entry.row.frame_state != "kept":
+            yield entry.path, "its picture is no longer kept"
             continue
         try:
             strip = unwrap(read_image(folder / str(record.frame_file)), record.inspection.ring)

@@ -5,6 +5,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from station.archive.journal import Kind, append, entries
+from station.errors import LoginError
 
 
 class Opinion(StrEnum):
@@ -52,10 +53,16 @@ def possible(verdict: str) -> tuple[Opinion, ...]:
     return {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}.get(verdict, ())
 
 
-def give(folder: Path, who: str, inspection_id: int, verdict: str, opinion: Opinion, comment: str = "") -> None:
-    """Raises RecordError, ValueError if one cannot think so of that verdict."""
+def give(folder: Path, who: str, may_second: bool, inspection_id: int, verdict: str, opinion: Opinion, comment: str = "") -> None:
+    """`may_second`: whether a second person of their level is believed; raises LoginError if it is needed, RecordError.
+
+    Raises ValueError if one cannot think so of that verdict.
+    """
     if opinion not in possible(verdict):
         raise ValueError(f"{opinion} cannot be said of {verdict}")
+    before = reviews(folder).get(inspection_id)
+    if not may_second and before is not None and set(before.opinions) - {who}:
+        raise LoginError("the second review needs the level quality")
     append(folder, Kind.REVIEW, who, str(inspection_id), verdict, opinion, comment)
 
 

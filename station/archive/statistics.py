@@ -23,6 +23,8 @@ class Point:
     """Highest score of NOK."""
     mean_dn: float | None
     sharpness: float | None
+    saturated: float | None
+    """Share of the pixels."""
     novelty: float | None
     cycle_ms: float
 
@@ -91,6 +93,7 @@ def summarise(records: Iterable[Record]) -> Summary:
                 max((s.nok for s in inspection.scores), default=None),
                 None if q is None else q.mean_dn,
                 None if q is None else q.sharpness,
+                None if q is None else q.saturated_share,
                 inspection.novelty,
                 sum(ms for ms in (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms) if ms is not None),
             )

@@ -13,7 +13,7 @@ from station.archive.room import Disk, Room
 from station.archive.schema import SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
 from station.errors import ImageError, RecordError
-from station.filelock import FolderLock
+from station.filelock import FileLock
 from station.imagefile import encode_png
 from station.records import Part, Provenance, Record, to_json
 from station.settings import ArchiveSettings
@@ -51,7 +51,7 @@ class Archive:
         """When a record could not be written; None: it goes well."""
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            self._lock = FolderLock(self._folder)
+            self._lock = FileLock(self._folder / "engine.lock")
         except BlockingIOError:
             raise RecordError(f"{self._folder}: another engine keeps its records there; stop it or set archive.folder") from None
         except OSError as error:

@@ -14,8 +14,8 @@ class Bridge(QObject):
 
     status = Signal(object)
     """StatusEvent"""
-    part = Signal(object)
-    """PartEvent"""
+    parts = Signal(object)
+    """PartEvents that came at once, the newest last."""
     look = Signal(object)
     """LookEvent"""
     preview = Signal(object)
@@ -29,13 +29,16 @@ class Bridge(QObject):
         self._timer.start(POLL_MS)
 
     def _poll(self) -> None:
+        parts: list[PartEvent] = []
         for event in self._subscriber.events():
             if isinstance(event, StatusEvent):
                 self.status.emit(event)
             elif isinstance(event, PartEvent):
-                self.part.emit(event)
+                parts.append(event)
             else:
                 self.look.emit(event)
+        if parts:
+            self.parts.emit(parts)
         preview = self._subscriber.preview()
         if preview is not None:
             self.preview.emit(preview)

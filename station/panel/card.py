@@ -75,6 +75,7 @@ class Table(QTableWidget):
 
     def __init__(self, heads: Sequence[str], stretch: int = -1) -> None:
         super().__init__(0, len(heads))
+        self._keys: list[object] = []
         self.setHorizontalHeaderLabels(list(heads))
         self.verticalHeader().hide()
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -89,9 +90,10 @@ class Table(QTableWidget):
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(stretch % len(heads), QHeaderView.ResizeMode.Stretch)
 
-    def fill(self, rows: Sequence[Sequence[str]]) -> None:
-        """All rows anew; the chosen one stays chosen if it is there."""
-        chosen = self.currentRow()
+    def fill(self, rows: Sequence[Sequence[str]], keys: Sequence[object] = ()) -> None:
+        """All rows anew; with a key for each row the chosen one stays chosen, wherever it is now."""
+        chosen = self.chosen() if keys else None
+        self._keys = list(keys)
         self.setRowCount(len(rows))
         for r, row in enumerate(rows):
             for c, text in enumerate(row):
@@ -100,8 +102,15 @@ class Table(QTableWidget):
                     self.setItem(r, c, QTableWidgetItem(text))
                 elif item.text() != text:
                     item.setText(text)
-        if chosen >= len(rows):
+        if chosen is not None and chosen in self._keys:
+            self.selectRow(self._keys.index(chosen))
+        elif chosen is not None or self.currentRow() >= len(rows):
+            self.setCurrentCell(-1, -1)
             self.clearSelection()
+
+    def chosen(self) -> object | None:
+        """Key of the chosen row."""
+        return self._keys[self.currentRow()] if 0 <= self.currentRow() < len(self._keys) else None
 
     def texts(self) -> list[list[str]]:
         """What stands in it."""

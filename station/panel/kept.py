@@ -40,6 +40,8 @@ def defect_map(classifier: Classifier, folder: Path, record: Record) -> QImage:
     """Where the network sees holes (red) and missing weld (yellow), to lay over the strip. Raises ImageError, ModelError."""
     if record.inspection.ring is None:
         raise ImageError("no weld was found in it")
+    if classifier.card.file_hash != record.provenance.model_hash:
+        raise ImageError("another model judged it: where that saw defects is not known")
     maps = classifier(segments(unwrap(kept_frame(folder, record), record.inspection.ring))).maps  # (21, 2, 32, 32)
     whole = np.concatenate(list(maps), axis=2)  # (2, 32, 672)
     layer = np.zeros((*whole.shape[1:], 4), np.uint8)

@@ -2,38 +2,51 @@
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
 
-from station.domain import Verdict
-from station.errors import RecordError, WeldgateError
-from station.events import LookEvent, PartEvent, Preview, StatusEvent
+from station.archive.journal import Kind, append
+from station.domain import Purpose, Verdict
+from station.errors import LoginError, RecordError, WeldgateError
+from station.events import SETTING_UP, LookEvent, PartEvent, Preview, StatusEvent
 from station.panel.bridge import Bridge
+from station.panel.live.lamp_state import STATUS_LOST_S
 from station.plc.alarms import Alarm
-from station.requests import Reload, Request, Service, TestPicture
+from station.plc.registers import Offline, Status
+from station.requests import Reload, Request, ResetCounts, Service, TestPicture
 from station.settings import Settings
+from station.settings_file import load
 from station.users import Level, User, log_out
 
 FILM = 300
 """Parts at hand."""
 THUMB_PX = 96
-STATUS_LOST_S = 2.0
 RENEW_MS = 1000
-PATIENCE_S = 30.0
-"""So long an engine may take to load changed settings."""
+AGAIN_S = 1.0
+"""An engine that did not take up changed settings is asked again."""
+
+
+@dataclass(slots=True)
+class Change:
+    """Changed settings that the engine has not yet answered for."""
+
+    undo: Callable[[], None]
+    asked_s: float
+    """Epoch seconds."""
+    again_s: float
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
-    """A part, when it came, and its picture in small."""
+class Pinned:
+    """A part that stays in sight, and its picture once it has come."""
 
-    event: PartEvent
-    at_s: float
-    """Monotonic time."""
+    part: PartEvent
+    preview: Preview | None
 
 
 class Session(QObject):
@@ -46,6 +59,10 @@ class Session(QObject):
     """LookEvent"""
     user_changed = Signal()
     service_changed = Signal()
+    settings_changed = Signal()
+    """Somebody has changed the settings file, or its adjustments."""
+    change_used = Signal()
+    """The station goes by the changed settings."""
     change_refused = Signal()
     """Changed settings could not be used and were taken back."""
 
@@ -54,20 +71,18 @@ class Session(QObject):
         super().__init__()
         self.bridge, self.settings, self.path = bridge, settings, path
         self.status: StatusEvent | None = None
-        self._status_s = -1e9
-        self.parts: deque[Heard] = deque(maxlen=FILM)
+        self.parts: deque[PartEvent] = deque(maxlen=FILM)
         self.thumbs: dict[int, QImage] = {}
         self.preview: Preview | None = None
         self.look_preview: Preview | None = None
         """Of the last setting-up picture."""
-        self.last_nok: tuple[PartEvent, Preview] | None = None
+        self.last_nok: Pinned | None = None
         self.user: User | None = None
-        self._undo: tuple[Callable[[], None], float] | None = None
-        """Takes the last change back, and until when it is waited for."""
+        self.change: Change | None = None
         self.service: Service | None = None
         """What is asked for while somebody works on the station."""
         bridge.status.connect(self._on_status)
-        bridge.part.connect(self._on_part)
+        bridge.parts.connect(self._on_parts)
         bridge.preview.connect(self._on_preview)
         bridge.look.connect(self._on_look)
         self._renew = QTimer(self)
@@ -82,17 +97,12 @@ class Session(QObject):
         return self.settings.archive.folder
 
     @property
-    def status_age_s(self) -> float:
-        """Since the engine was heard last."""
-        return time.monotonic() - self._status_s
-
-    @property
     def engine_there(self) -> bool:
         """Whether the engine was heard just now."""
-        return self.status is not None and self.status_age_s <= STATUS_LOST_S
+        return self.status is not None and time.monotonic() - self.status.at_s <= STATUS_LOST_S
 
     @property
-    def last(self) -> Heard | None:
+    def last(self) -> PartEvent | None:
         """The newest part."""
         return self.parts[-1] if self.parts else None
 
@@ -104,33 +114,54 @@ class Session(QObject):
         """False if no engine is there."""
         return self.bridge.ask(request)
 
+    def who(self, level: Level) -> User:
+        """Who is logged in. Raises LoginError if they may not do what this level may."""
+        if self.user is None or self.user.level < level:
+            raise LoginError(f"a login of the level {level.name.lower()} is needed")
+        return self.user
+
     def test_picture(self, master: str = "") -> bool:
-        """False if no engine is there."""
+        """False if no engine is there. Raises LoginError, RecordError if it cannot be noted who asked."""
+        user = self.who(Level.SETTER if master else Level.OPERATOR)
+        append(self.folder, Kind.SERVICE, user.name, "test picture", after=master)
         return self.ask(TestPicture(time.time(), master))
+
+    def reset_counts(self) -> bool:
+        """False if no engine is there. Raises LoginError, RecordError if it cannot be noted who asked."""
+        user, counts = self.who(Level.SETTER), None if self.status is None else self.status.counts
+        before = "" if counts is None else f"OK {counts.ok}, NOK {counts.nok}, ERROR {counts.error}"
+        append(self.folder, Kind.SERVICE, user.name, "counters", before, "0")
+        return self.ask(ResetCounts(time.time(), user.name))
 
     def reload(self, undo: Callable[[], None]) -> bool:
         """False if no engine is there. `undo` is done if the engine refuses the settings."""
-        refused = self.status is not None and Alarm.SETTINGS_REFUSED in self.status.alarms
-        self._undo = None if refused else (undo, time.monotonic() + PATIENCE_S)
-        return self.ask(Reload(time.time()))
+        now_s = time.time()
+        self.change = Change(undo, now_s, now_s + AGAIN_S)
+        return self.ask(Reload(now_s))
 
-    def _look_at_change(self, event: StatusEvent) -> None:
-        if self._undo is None:
+    def _look_at_change(self, event: StatusEvent, restarted: bool) -> None:
+        """A change is in use once the engine says that it has read the settings since, or has started since."""
+        if (change := self.change) is None:
             return
-        undo, until_s = self._undo
-        if Alarm.SETTINGS_REFUSED in event.alarms:
-            self._undo = None
+        if restarted or event.reloaded_s >= change.asked_s:
+            self.change = None
+            if Alarm.SETTINGS_REFUSED not in event.alarms:
+                self.change_used.emit()
+                return
             try:
-                undo()
+                change.undo()
             except WeldgateError:
                 return  # the alarm stays, and with it the reason in the engine's log
             self.ask(Reload(time.time()))
             self.change_refused.emit()
-        elif time.monotonic() > until_s:
-            self._undo = None
+        elif time.time() >= change.again_s and event.offline is not Offline.ATTENDED:
+            change.again_s = time.time() + AGAIN_S
+            self.ask(Reload(time.time()))
 
     def log_in(self, user: User) -> None:
-        """They stay so until they log out or nothing is touched for a while."""
+        """They stay so until they log out, another one logs in, or nothing is touched for a while."""
+        if self.user is not None:
+            self.log_out("another one logs in")
         self.user = user
         self.touched()
         self.user_changed.emit()
@@ -141,10 +172,8 @@ class Session(QObject):
         user, self.user = self.user, None
         self._idle.stop()
         if user is not None:
-            try:
+            with suppress(RecordError):  # whoever leaves must be able to
                 log_out(self.folder, user, why)
-            except RecordError:
-                pass  # whoever leaves must be able to
             self.user_changed.emit()
 
     def touched(self) -> None:
@@ -153,7 +182,12 @@ class Session(QObject):
             self._idle.start(int(self.settings.panel.logout_min * 60_000))
 
     def serve(self, service: Service) -> None:
-        """Begin or go on with service mode; renewed until `end_service`."""
+        """Begin or go on with service mode; renewed until `end_service`. Raises LoginError, RecordError; then nothing is asked for."""
+        user, before = self.who(Level.SETTER), self.service
+        if before is None:
+            append(self.folder, Kind.SERVICE, user.name, "service mode", after="begins")
+        if service.bit != (before.bit if before is not None else 0):
+            append(self.folder, Kind.SERVICE, user.name, "bit by hand", _bit(before.bit if before is not None else 0), _bit(service.bit))
         self.service = service
         self._say_service()
         self._renew.start(RENEW_MS)
@@ -164,8 +198,10 @@ class Session(QObject):
         if self.service is None:
             return
         self._renew.stop()
-        self.ask(Service(time.time(), self.service.who, over=True))
-        self.service = None
+        who, self.service = self.service.who, None
+        self.ask(Service(time.time(), who, over=True))
+        with suppress(RecordError):  # whoever leaves must be able to
+            append(self.folder, Kind.SERVICE, who, "service mode", "begins", "over")
         self.service_changed.emit()
 
     def _say_service(self) -> None:
@@ -174,30 +210,47 @@ class Session(QObject):
             self.ask(Service(time.time(), s.who, s.bit, s.look, s.exposure_us, s.gain_db))
 
     def _on_status(self, event: StatusEvent) -> None:
-        self.status, self._status_s = event, time.monotonic()
-        self._look_at_change(event)
+        before, self.status = self.status, event
+        restarted = before is not None and event.started_s != before.started_s
+        if before is not None and event.config_crc != before.config_crc:
+            self._read_settings()
+        self._look_at_change(event, restarted)
         self.status_changed.emit()
 
-    def _on_part(self, event: PartEvent) -> None:
-        if len(self.parts) == FILM:
-            self.thumbs.pop(self.parts[0].event.record.inspection_id, None)
-        self.parts.append(Heard(event, time.monotonic()))
+    def _read_settings(self) -> None:
+        """The station goes by other settings: perhaps another window has changed them."""
+        with suppress(WeldgateError):  # the engine has said what is wrong with them
+            found = load(self.path)
+            if found != self.settings:
+                self.settings = found
+                self.settings_changed.emit()
+
+    def _on_parts(self, events: Sequence[PartEvent]) -> None:
+        for event in events:
+            if len(self.parts) == FILM:
+                self.thumbs.pop(self.parts[0].record.inspection_id, None)
+            self.parts.append(event)
+            if event.record.verdict is Verdict.NOK and event.record.purpose is Purpose.PART:
+                preview = self.preview
+                fits = preview is not None and preview.inspection_id == event.record.inspection_id
+                self.last_nok = Pinned(event, preview if fits else None)
         self.part_came.emit()
 
     def _on_preview(self, preview: Preview) -> None:
-        if preview.inspection_id == 0:
+        if preview.inspection_id == SETTING_UP:
             self.look_preview = preview
             self.preview_came.emit()
             return
         self.preview = preview
+        pinned = self.last_nok
+        if pinned is not None and preview.inspection_id == pinned.part.record.inspection_id:
+            self.last_nok = Pinned(pinned.part, preview)
         last = self.last
-        if last is not None and preview.inspection_id == last.event.record.inspection_id:
+        if last is not None and preview.inspection_id == last.record.inspection_id:
             image = QImage.fromData(preview.frame_jpeg)
             if not image.isNull():
                 mode = Qt.TransformationMode.SmoothTransformation
                 self.thumbs[preview.inspection_id] = image.scaled(THUMB_PX, THUMB_PX, Qt.AspectRatioMode.KeepAspectRatio, mode)
-            if last.event.record.verdict is Verdict.NOK:
-                self.last_nok = (last.event, preview)
         self.preview_came.emit()
 
     def _on_look(self, event: LookEvent) -> None:
@@ -209,3 +262,7 @@ class Session(QObject):
         self._renew.stop()
         self._idle.stop()
         self.bridge.close()
+
+
+def _bit(bit: int) -> str:
+    return str(Status(bit).name) if bit else "–"

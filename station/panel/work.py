@@ -44,8 +44,9 @@ class WorkBar(QWidget):
         return self._thread is not None
 
     def start(self, what: str, work: Callable[[Told], Any]) -> bool:
-        """False if something is still being done."""
+        """False, and said, if something is still being done."""
         if self._thread is not None:
+            self.failed.emit(translate("work", "something is still being done: wait for it or cancel it"))
             return False
         self._cancelled = cancelled = threading.Event()
         self._label.setText(what)
@@ -77,11 +78,11 @@ class WorkBar(QWidget):
         self._cancelled.set()
 
     def close_work(self) -> None:
-        """Cancel and wait; nothing is told any more."""
+        """Cancel and wait a little; nothing is told any more. What does not look whether it is cancelled ends with its step."""
         if self._thread is not None:
             self._closing.set()
             self._cancelled.set()
-            self._thread.join(timeout=10)
+            self._thread.join(timeout=1)
             self._thread = None
 
     def _on_moved(self, done: int, of: int) -> None:

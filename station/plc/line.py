@@ -157,6 +157,10 @@ class ModbusLine:
             raise LineError("the Modbus line is not running")
         self._health, self._health_s = health, time.monotonic()
 
+    def reset_counts(self) -> None:
+        """Parts are counted from 0."""
+        self._counts = dict.fromkeys(self._counts, 0)
+
     def windows(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Words of the command window as last read and of the status window as last published."""
         return tuple(self._command_words), tuple(self._status_words)
@@ -255,7 +259,7 @@ class ModbusLine:
     def _carry_out(self, command: Command) -> None:
         """What the line can do itself; the rest is for the cycle."""
         if command.code is CommandCode.RESET_COUNTERS:
-            self._counts = dict.fromkeys(self._counts, 0)
+            self.reset_counts()
         elif command.code is CommandCode.TIME_SYNC:
             plc_s = number(self._command, "PLC_TIME")
             log.info("PLC time is %+.1f s from the station's", plc_s - time.time())

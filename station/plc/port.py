@@ -97,6 +97,9 @@ class Line(Protocol):
     def publish(self, result: Result) -> bool:
         """Offer a result; returns once it is readable. False if it came too late and was not shown."""
 
+    def reset_counts(self) -> None:
+        """Parts are counted from 0, as if the PLC had commanded it."""
+
     def checked_in(self, health: Health) -> None:
         """The inspection is alive; call at least every 500 ms while idle."""
 

@@ -2,13 +2,21 @@
 
 import gc
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 import shiboken6
 from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 
+from deploy.demo import free_ports, station_toml
+from station.archive.schema import open_index
+from station.channel import Publisher
 from station.panel import theme, words
+from station.panel.app import open_window
 from station.panel.window import Window
+from station.settings import ChannelSettings
+from station.settings_file import load
 
 
 @pytest.fixture(autouse=True)
@@ -22,3 +30,33 @@ def _as_it_begins() -> Iterator[None]:
     if QApplication.instance() is not None:
         words.use("en")
         theme.use("dark")
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    made = tmp_path / "station.toml"
+    made.write_text(station_toml(tmp_path / "records", *free_ports(4)))
+    (tmp_path / "records").mkdir()
+    open_index(tmp_path / "records").close()
+    return made
+
+
+@pytest.fixture
+def settings(path: Path) -> ChannelSettings:
+    return load(path).channel
+
+
+@pytest.fixture
+def publisher(settings: ChannelSettings) -> Iterator[Publisher]:
+    end = Publisher(settings)
+    yield end
+    end.close()
+
+
+@pytest.fixture
+def window(path: Path, qtbot: QtBot) -> Iterator[Window]:
+    shown = open_window(path)
+    qtbot.addWidget(shown)
+    shown.show()
+    yield shown
+    shown.close()

@@ -1,4 +1,4 @@
-"""The lamp: each state by word, symbol and colour; a green never grows old."""
+"""The lamp: each state by word, symbol and colour; a green never grows old, and never says more than the PLC was told."""
 
 from dataclasses import replace
 
@@ -9,28 +9,32 @@ from hypothesis import strategies as st
 from station.domain import Inspection, Origin, Purpose, Reason
 from station.events import PartEvent, StatusEvent
 from station.panel.live.lamp_state import FRESH_S, GONE_S, STATUS_LOST_S, WHY_OFFLINE, Tone, lamp
-from station.plc.registers import Offline
+from station.plc.alarms import Alarm
+from station.plc.registers import Offline, VerdictCode
 from tests.panel.made import part, status
 from tests.parts import nok_inspection, ok_inspection
 
-UP = status(origin=Origin.CAMERA)
+NOW_S = 1000.0
+UP = status(origin=Origin.CAMERA, at_s=NOW_S)
+GOOD = part(ok_inspection(), at_s=NOW_S)
 
 
 @pytest.mark.parametrize(
     ("event", "word", "symbol", "tone"),
     [
-        (part(ok_inspection()), "OK", "✓", Tone.GOOD),
-        (part(nok_inspection()), "NOK", "✗", Tone.BAD),
-        (part(Inspection.error(Reason.NO_WELD_FOUND)), "ERROR", "!", Tone.WARN),
-        (part(ok_inspection(), origin=Origin.REPLAY), "TEST", "T", Tone.TEST),
-        (part(ok_inspection(), purpose=Purpose.TEST), "TEST", "T", Tone.TEST),
-        (part(ok_inspection(), purpose=Purpose.GOLDEN), "TEST", "T", Tone.TEST),
-        (replace(part(ok_inspection()), shown_to_plc=False), "ERROR", "!", Tone.WARN),
+        (GOOD, "OK", "✓", Tone.GOOD),
+        (part(nok_inspection(), at_s=NOW_S), "NOK", "✗", Tone.BAD),
+        (part(Inspection.error(Reason.NO_WELD_FOUND), at_s=NOW_S), "ERROR", "!", Tone.WARN),
+        (part(ok_inspection(), origin=Origin.REPLAY, at_s=NOW_S), "TEST", "T", Tone.TEST),
+        (part(ok_inspection(), purpose=Purpose.TEST, at_s=NOW_S), "TEST", "T", Tone.TEST),
+        (part(ok_inspection(), purpose=Purpose.GOLDEN, at_s=NOW_S), "TEST", "T", Tone.TEST),
+        (part(ok_inspection(), at_s=NOW_S, trusted=False), "TEST", "T", Tone.TEST),
+        (replace(GOOD, told=VerdictCode.ERROR), "ERROR", "!", Tone.WARN),
         (None, "NO VERDICT", "–", Tone.QUIET),
     ],
 )
 def test_words_symbols_and_colours(event: PartEvent | None, word: str, symbol: str, tone: Tone) -> None:
-    shown = lamp(UP, 0.1, event, 0.1)
+    shown = lamp(UP, event, NOW_S + 0.1)
     assert (shown.word, shown.symbol, shown.tone) == (word, symbol, tone)
 
 
@@ -38,33 +42,54 @@ def test_words_symbols_and_colours(event: PartEvent | None, word: str, symbol: s
     ("said", "word", "detail"),
     [
         (None, "OFFLINE", "no word from the engine"),
-        (status(Offline.PLC_SILENT), "PLC LOST", "the PLC's heartbeat stands still"),
-        (status(Offline.CAMERA_LOST, camera="camera 1: cable"), "OFFLINE", "camera lost"),
-        (status(Offline.NOT_ENABLED), "OFFLINE", "the PLC has not enabled the station"),
-        (status(Offline.SERVICE, service="Ada"), "SERVICE", "works on the station"),
+        (status(Offline.PLC_SILENT, at_s=NOW_S), "PLC LOST", "the PLC's heartbeat stands still"),
+        (status(Offline.CAMERA_LOST, camera="camera 1: cable", at_s=NOW_S), "OFFLINE", "camera lost"),
+        (status(Offline.NOT_ENABLED, at_s=NOW_S), "OFFLINE", "the PLC has not enabled the station"),
+        (status(Offline.SERVICE, service="Ada", at_s=NOW_S), "SERVICE", "works on the station"),
     ],
 )
 def test_what_is_lost_is_told_apart_and_no_green_covers_it(said: StatusEvent | None, word: str, detail: str) -> None:
-    shown = lamp(said, 0.1 if said else 1e9, None, 1e9)
+    shown = lamp(said, None, NOW_S)
     assert (shown.word, shown.detail) == (word, detail)
-    if said is None or said.service or said.offline in (Offline.PLC_SILENT, Offline.CAMERA_LOST):
-        assert lamp(said, 0.1 if said else 1e9, part(ok_inspection()), 0.1).word == word
+    assert lamp(said, GOOD, NOW_S).word == word
 
 
 def test_every_reason_to_be_offline_has_words() -> None:
     assert set(WHY_OFFLINE) | {Offline.NONE, Offline.CAMERA_LOST, Offline.PLC_SILENT} == set(Offline)
 
 
-@given(st.floats(0, 1e6), st.floats(0, 1e6))
-def test_no_old_green(status_age_s: float, part_age_s: float) -> None:
-    shown = lamp(UP, status_age_s, part(ok_inspection()), part_age_s)
+@pytest.mark.parametrize("offline", [reason for reason in Offline if reason is not Offline.NONE])
+def test_no_green_while_the_station_is_off_the_line(offline: Offline) -> None:
+    assert lamp(status(offline, at_s=NOW_S), GOOD, NOW_S).tone is not Tone.GOOD
+
+
+def test_no_green_of_the_engine_before() -> None:
+    assert lamp(status(at_s=NOW_S + 2, started_s=NOW_S + 1), GOOD, NOW_S + 2).word == "NO VERDICT"
+
+
+def test_no_green_that_the_line_does_not_take() -> None:
+    shown = lamp(status(at_s=NOW_S, alarms=(int(Alarm.MASTERS_DUE),)), GOOD, NOW_S)
+    assert (shown.word, shown.more) == ("TEST", "OK")
+
+
+@given(st.floats(0, 1e6), st.floats(0, 1e6), st.sampled_from(list(VerdictCode)), st.sampled_from(list(Offline)), st.floats(0, 2e6))
+def test_green_is_a_fresh_ok_that_the_plc_reads(
+    status_age_s: float, part_age_s: float, told: VerdictCode, offline: Offline, started_s: float
+) -> None:
+    now_s = 2e6
+    said = status(offline, at_s=now_s - status_age_s, started_s=started_s)
+    shown = lamp(said, replace(GOOD, at_s=now_s - part_age_s, told=told), now_s)
     if shown.tone is Tone.GOOD:
+        assert told is VerdictCode.OK
+        assert offline is Offline.NONE
+        assert now_s - part_age_s >= started_s
         assert part_age_s <= GONE_S
         assert status_age_s <= STATUS_LOST_S
         assert shown.strength == 1.0 or part_age_s > FRESH_S
 
 
 def test_green_fades() -> None:
-    strengths = [lamp(UP, 0.1, part(ok_inspection()), age).strength for age in (0, FRESH_S, 5, 8, GONE_S)]
+    ages = (0, FRESH_S, 5, 8, GONE_S)
+    strengths = [lamp(replace(UP, at_s=NOW_S + age), GOOD, NOW_S + age).strength for age in ages]
     assert strengths == sorted(strengths, reverse=True)
     assert strengths[0] > strengths[-1]

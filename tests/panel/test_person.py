@@ -238,11 +238,11 @@ def test_nobody_stays_logged_in_for_ever(window: Window, qtbot: QtBot) -> None:
 
 def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
     _, line = station
-    session = window.session
     line.passes(qtbot, 4)
-    qtbot.waitUntil(lambda: session.last_nok is not None, timeout=10_000)
-    live = window._pages[0]
+    live = window.page
     assert isinstance(live, LivePage)
+    qtbot.waitUntil(lambda: len(window.session.parts) == 4, timeout=10_000)
+    qtbot.waitUntil(live.show_map.isEnabled, timeout=10_000)
     qtbot.mouseClick(live.show_map, LEFT)
     qtbot.waitUntil(lambda: live._nok_strip._map is not None, timeout=20_000)
     overlay = live._nok_strip._map

@@ -1,22 +1,17 @@
 """The window over a real channel, offscreen."""
 
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from deploy.demo import free_ports, station_toml
-from station.archive.schema import open_index
 from station.channel import Inbox, Publisher, Subscriber
 from station.domain import Image, Ring
 from station.errors import LineError
 from station.events import Counts
 from station.panel import theme
-from station.panel.app import open_window
 from station.panel.live.page import LivePage
 from station.panel.setup.page import SetupPage
 from station.panel.window import HEADER_PX, NAV_PX, PAGES, Window
@@ -25,42 +20,12 @@ from station.plc.registers import Offline
 from station.preview import make_preview
 from station.requests import TestPicture
 from station.settings import ChannelSettings
-from station.settings_file import load
+from station.users import Level, User
 from tests.panel.made import part, status
 from tests.parts import label_with, nok_inspection, ok_inspection
 
 TABS_PX = 80
 """Of the page Setup, with its margins."""
-
-
-@pytest.fixture
-def path(tmp_path: Path) -> Path:
-    made = tmp_path / "station.toml"
-    made.write_text(station_toml(tmp_path / "records", *free_ports(4)))
-    (tmp_path / "records").mkdir()
-    open_index(tmp_path / "records").close()
-    return made
-
-
-@pytest.fixture
-def settings(path: Path) -> ChannelSettings:
-    return load(path).channel
-
-
-@pytest.fixture
-def publisher(settings: ChannelSettings) -> Iterator[Publisher]:
-    end = Publisher(settings)
-    yield end
-    end.close()
-
-
-@pytest.fixture
-def window(path: Path, qtbot: QtBot) -> Iterator[Window]:
-    shown = open_window(path)
-    qtbot.addWidget(shown)
-    shown.show()
-    yield shown
-    shown.close()
 
 
 def live(window: Window) -> LivePage:
@@ -101,16 +66,18 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
 def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(window: Window, frames: dict[str, Image], qtbot: QtBot) -> None:
     session = window.session
     item = label_with("OK")
-    session._on_part(part(ok_inspection(), 1))
+    session._on_parts([part(ok_inspection(), 1)])
     session._on_preview(make_preview(1, frames[item["frame"]], None))
     assert live(window).weld._note == ""
-    session._on_part(part(ok_inspection(), 2))
+    session._on_parts([part(ok_inspection(), 2)])
     assert "no picture of this part" in live(window).weld._note
 
 
 def test_the_button_asks_the_engine_for_a_test_picture(
     window: Window, publisher: Publisher, settings: ChannelSettings, qtbot: QtBot
 ) -> None:
+    assert not live(window).test.isEnabled(), "nobody is logged in, no engine was heard yet"
+    window.session.log_in(User("Bob", Level.OPERATOR))
     assert not live(window).test.isEnabled(), "no engine was heard yet"
     inbox = Inbox(settings)
     try:
@@ -134,11 +101,10 @@ def test_the_button_asks_the_engine_for_a_test_picture(
 def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> None:
     session = window.session
     session._on_status(status())
-    session._on_part(part(ok_inspection()))
+    session._on_parts([part(ok_inspection())])
     assert live(window).lamp.lamp.word == "OK"
-    session._status_s -= 10
+    session._on_status(status(at_s=time.monotonic() - 10))
     live(window).age()
-    window._on_status()
     assert live(window).lamp.lamp.word == "OFFLINE"
     assert "no word from the engine" in window._alarm.text()
 
@@ -153,14 +119,13 @@ def test_a_restarted_engine_needs_no_new_panel(window: Window, settings: Channel
 
         qtbot.waitUntil(told, timeout=5000)
         end.close()
-        window.session._status_s -= 10
-        live(window).age()
+        window.session._on_status(status(at_s=time.monotonic() - 10))
         assert live(window).lamp.lamp.word == "OFFLINE"
 
 
 def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Window, qtbot: QtBot) -> None:
     window.session._on_status(status(counts=Counts(7, 2, 1)))
-    window.session._on_part(part(nok_inspection(), 5))
+    window.session._on_parts([part(nok_inspection(), 5)])
     window.go(2)
     window.speak("de")
     assert [window._buttons.button(i).text() for i in range(6)] == ["Live", "Verlauf", "Statistik", "Linie", "Alarme", "Einrichten"]

@@ -45,12 +45,12 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
     archive.close()
     before = {path: path.read_bytes() for path in folder.rglob("*.json")}
     for who in ("Ada", "Bob"):
-        give(folder, who, 1, "NOK", Opinion.RIGHT)
-        give(folder, who, 2, "NOK", Opinion.FALSE_CALL, "soot")
-        give(folder, who, 3, "OK", Opinion.MISSED)
-    give(folder, "Ada", 4, "NOK", Opinion.FALSE_CALL)
+        give(folder, who, True, 1, "NOK", Opinion.RIGHT)
+        give(folder, who, True, 2, "NOK", Opinion.FALSE_CALL, "soot")
+        give(folder, who, True, 3, "OK", Opinion.MISSED)
+    give(folder, "Ada", True, 4, "NOK", Opinion.FALSE_CALL)
     with pytest.raises(ValueError, match="cannot be said of ERROR"):
-        give(folder, "Ada", 5, "ERROR", Opinion.RIGHT)
+        give(folder, "Ada", True, 5, "ERROR", Opinion.RIGHT)
     assert [reviews(folder)[n].state for n in (1, 2, 3, 4)] == [State.AGREED] * 3 + [State.ONE]
     assert {path: path.read_bytes() for path in folder.rglob("*.json")} == before
     problems = list(export(read_records(folder), folder, tmp_path / "out", "reviewed"))

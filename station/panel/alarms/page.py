@@ -5,9 +5,9 @@ from datetime import datetime
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
-from station.archive.journal import Entry, Kind, append, entries
+from station.archive.journal import Kind, append, entries
 from station.errors import RecordError
-from station.panel.card import Table, label
+from station.panel.card import Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
@@ -23,18 +23,20 @@ class AlarmsPage(Page):
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self._rows: list[Entry] = []
-        heads = ("", "code", "cause", "what to do", "since", "until", "acknowledged by")
-        titles = {
-            "": "",
-            "code": translate("alarms", "code"),
-            "cause": translate("alarms", "cause"),
-            "what to do": translate("alarms", "what to do"),
-            "since": translate("alarms", "since"),
-            "until": translate("alarms", "until"),
-            "acknowledged by": translate("alarms", "acknowledged by"),
-        }
-        self.table = Table([titles[head] for head in heads], stretch=3)
+        heads = (
+            "",
+            translate("alarms", "code"),
+            translate("alarms", "cause"),
+            translate("alarms", "since"),
+            translate("alarms", "until"),
+            translate("alarms", "acknowledged by"),
+        )
+        self.table = Table(heads, stretch=2)
+        self._actions: dict[object, str] = {}
+        """By the entry's number."""
+        self.action = label("", "fact", wrap=True)
+        self.action.setMinimumHeight(44)
+        self.table.itemSelectionChanged.connect(self._on_chosen)
         self.acknowledge = QPushButton(translate("alarms", "Acknowledge"))
         self.acknowledge.clicked.connect(self._acknowledge)
         self._problem = label("", "problem")
@@ -45,6 +47,7 @@ class AlarmsPage(Page):
         row.addWidget(self.acknowledge)
         column = QVBoxLayout(self)
         column.addWidget(self.table, 1)
+        column.addWidget(titled(translate("alarms", "what to do"), self.action))
         column.addLayout(row)
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._when_seen)
@@ -64,7 +67,7 @@ class AlarmsPage(Page):
             return
         over: dict[str, str] = {}
         seen = {e.subject: e.who for e in told if e.kind is Kind.ALARM_SEEN}
-        rows, self._rows = [], []
+        rows, numbers = [], []
         for entry in told:  # the newest first
             if entry.kind is Kind.ALARM_OVER:
                 over[entry.subject] = entry.at
@@ -80,25 +83,29 @@ class AlarmsPage(Page):
                         "" if until else "●",
                         entry.subject,
                         cause,
-                        data(text.action) if text else "",
                         _local(entry.at),
                         (_local(until) if lasts else "") if until else translate("alarms", "lasts"),
                         seen.get(str(entry.number), ""),
                     )
                 )
-                self._rows.append(entry)
-        self.table.fill(rows[:SHOWN])
-        self._rows = self._rows[:SHOWN]
+                numbers.append(entry.number)
+                self._actions[entry.number] = data(text.action) if text else ""
+        self.table.fill(rows[:SHOWN], numbers[:SHOWN])
+        if self.table.chosen() is None and rows:
+            self.table.selectRow(0)
+
+    def _on_chosen(self) -> None:
+        self.action.setText(self._actions.get(self.table.chosen(), ""))
 
     def _acknowledge(self) -> None:
-        row, user = self.table.currentRow(), self._session.user
+        number, user = self.table.chosen(), self._session.user
         if user is None:
             self._problem.setText(translate("alarms", "log in first (page Setup)"))
-        elif not 0 <= row < len(self._rows):
+        elif number is None:
             self._problem.setText(translate("alarms", "choose an alarm first"))
         else:
             try:
-                append(self._session.folder, Kind.ALARM_SEEN, user.name, str(self._rows[row].number))
+                append(self._session.folder, Kind.ALARM_SEEN, user.name, str(number))
                 self._problem.setText("")
             except RecordError as error:
                 self._problem.setText(str(error))

@@ -11,7 +11,7 @@ from station.archive.export import export
 from station.archive.reader import Row, Wanted, find, read_record, read_records
 from station.archive.review import Opinion, Review, State, give, possible, reviews
 from station.domain import SEGMENTS, Reason, Verdict
-from station.errors import ImageError, LocateError, RecordError
+from station.errors import ImageError, LocateError, RecordError, WeldgateError
 from station.panel.card import label
 from station.panel.history.filmstrip import Filmstrip
 from station.panel.history.record_view import RecordView
@@ -20,6 +20,7 @@ from station.panel.page import Page
 from station.panel.session import FILM, THUMB_PX, Session
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
+from station.users import Level
 
 REFRESH_MS = 1000
 GALLERY = 60
@@ -33,7 +34,10 @@ class HistoryPage(Page):
         super().__init__()
         self._session = session
         self.film, self.record = Filmstrip(), RecordView()
-        self._newest = 0
+        self._seen = 0
+        """Number of the newest part at the last search."""
+        self._pictures: dict[int, QImage] = {}
+        """Read for the gallery."""
         self._lay_out()
         self.film.currentItemChanged.connect(self._on_chosen)
         self.gallery.toggled.connect(self._on_gallery)
@@ -43,6 +47,7 @@ class HistoryPage(Page):
             box.currentIndexChanged.connect(self.search)
         self._work.done.connect(self._on_pictures)
         self._work.failed.connect(self._problem.setText)
+        session.user_changed.connect(self.comment.clear)
         session.user_changed.connect(self._on_user)
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._follow)
@@ -143,26 +148,32 @@ class HistoryPage(Page):
             self._problem.setText(str(error))
         else:
             self._problem.setText("")
-        self._newest = max((row.inspection_id for row in rows), default=0)
-        self.film.fill(rows, self._session.thumbs, known)
+        last = self._session.last
+        self._seen = 0 if last is None else last.record.inspection_id
+        self._pictures = {row.inspection_id: self._pictures[row.inspection_id] for row in rows if row.inspection_id in self._pictures}
+        self.film.fill(rows, {**self._pictures, **self._session.thumbs}, known)
         more, parts = translate("history", "the newest 300") if len(rows) == FILM else "", translate("history", "parts")
         self._count.setText(f"{len(rows)} {parts}  {more}")
         if self.film.chosen() is None and rows:
             self.film.setCurrentRow(0)
+        elif not rows:
+            self._on_chosen()
         if self.gallery.isChecked():
             self._read_pictures(rows)
 
     def _follow(self) -> None:
         """New parts come by themselves, but not while somebody looks further down."""
         last = self._session.last
-        newer = last is not None and last.event.record.inspection_id > self._newest
+        newer = last is not None and last.record.inspection_id != self._seen
         if newer and self.isVisible() and not self._work.busy and self.film.verticalScrollBar().value() == 0:
             self.search()
 
     def _on_chosen(self) -> None:
         number = self.film.chosen()
         row = None if number is None else self.film.rows.get(number)
-        if row is not None:
+        if row is None:
+            self.record.show_nothing()
+        else:
             self.record.show_row(self._session.folder, row)
         self._on_user()
 
@@ -191,13 +202,15 @@ class HistoryPage(Page):
 
     def say(self, opinion: Opinion) -> None:
         """Whoever is logged in says it of the chosen part."""
-        number, user = self.film.chosen(), self._session.user
-        if number is None or user is None:
+        number = self.film.chosen()
+        if number is None:
             return
         try:
-            give(self._session.folder, user.name, number, self.film.rows[number].verdict, opinion, self.comment.text().strip())
-        except RecordError as error:
-            self._problem.setText(str(error))
+            user, verdict = self._session.who(Level.OPERATOR), self.film.rows[number].verdict
+            give(self._session.folder, user.name, user.level >= Level.QUALITY, number, verdict, opinion, self.comment.text().strip())
+        except WeldgateError as error:
+            self._problem.setText(data(str(error)))
+            return
         self.comment.clear()
         self.search()
         self._on_user()
@@ -207,19 +220,22 @@ class HistoryPage(Page):
         self.search()
 
     def _read_pictures(self, rows: list[Row]) -> None:
-        folder, missing = self._session.folder, [r for r in rows[:GALLERY] if r.inspection_id not in self._session.thumbs]
-        if missing:
+        folder, known = self._session.folder, {**self._pictures, **self._session.thumbs}
+        missing = [r for r in rows[:GALLERY] if r.inspection_id not in known]
+        if missing and not self._work.busy:
             self._work.start(translate("history", "pictures"), lambda told: _thumbs(folder, missing, told))
 
     def _on_pictures(self, found: object) -> None:
         if isinstance(found, dict):
-            self.film.fill(list(self.film.rows.values()), {**self._session.thumbs, **found}, self._reviews())
+            self._pictures |= found
+            self.film.fill(list(self.film.rows.values()), {**self._pictures, **self._session.thumbs}, self._reviews())
         else:
-            self._problem.setText(str(found))
+            self._count.setText(str(found))
 
     def _ask_export(self) -> None:
-        name = QFileDialog.getExistingDirectory(self, translate("history", "Folder for the crops of reviewed parts"))
-        if name:
+        title = translate("history", "Folder for the crops of reviewed parts")
+        name = QFileDialog.getExistingDirectory(self, title, options=QFileDialog.Option.ReadOnly)
+        if name and self._session.may(Level.OPERATOR):  # or their time was over meanwhile
             self.export_to(Path(name) / "reviewed")
 
     def export_to(self, target: Path) -> None:
@@ -233,7 +249,8 @@ class HistoryPage(Page):
                 entries += list(read_records(folder, Wanted(number=number)))
                 if not told(count, len(agreed)):
                     return ""
-            problems = list(export(entries, folder, target, "reviewed"))
+            done = iter(range(len(entries)))
+            problems = list(export(entries, folder, target, "reviewed", lambda: told(next(done, 0), len(entries))))
             parts, left_out = translate("history", "parts"), translate("history", "left out")
             return f"{target}: {len(entries) - len(problems)} {parts}, {len(problems)} {left_out}"
 

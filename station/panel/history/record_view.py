@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 from station.archive.decided import segment_kinds
 from station.archive.reader import Row, read_record
 from station.classify.thresholds import Thresholds
-from station.domain import Reason
+from station.domain import Reason, Ring
 from station.errors import ImageError, LocateError
 from station.panel.card import Facts, Table, label, titled
 from station.panel.kept import of_record
@@ -42,14 +42,16 @@ class RecordView(QWidget):
             {
                 "verdict": translate("history", "verdict"),
                 "serial": translate("history", "serial"),
-                "trigger": translate("history", "trigger"),
+                "part": translate("history", "part · trigger"),
                 "time": translate("history", "time"),
                 "shown": translate("history", "seen by the PLC"),
-                "quality": translate("history", "brightness · sharpness"),
-                "ring": translate("history", "ring x · y · r px"),
+                "quality": translate("history", "brightness · sharpness · saturated"),
+                "ring": translate("history", "ring x · y · r · residual px"),
+                "novelty": translate("history", "distance to the training images"),
                 "steps": translate("history", "grab · find · unwrap · judge ms"),
                 "limits": translate("history", "limits"),
                 "model": translate("history", "model · recipe"),
+                "hash": translate("history", "model's hash · configuration"),
                 "origin": translate("history", "origin · purpose"),
             }
         )
@@ -67,16 +69,23 @@ class RecordView(QWidget):
         grid.setRowStretch(0, 1)
         grid.setColumnStretch(0, 1)
 
+    def show_nothing(self, why: str = "") -> None:
+        """No record, or one that cannot be read."""
+        self.record = None
+        self.problem.setText(why)
+        self.weld.show_weld(None, translate("history", "the record cannot be read") if why else translate("history", "no part"))
+        self.strip.show_strip(None, (), ())
+        self.findings.fill([])
+        self.facts.set(**dict.fromkeys(self.facts.values, "–"))
+
     def show_row(self, folder: Path, row: Row) -> None:
         """Read it from disk; what is missing or wrong is said."""
         self.record, problem = read_record(folder, row)
-        self.problem.setText("" if problem is None else f"{row.record_file}: {problem}")
+        said = "" if problem is None else f"{row.record_file}: {problem}"
         if self.record is None:
-            self.weld.show_weld(None, translate("history", "the record cannot be read"))
-            self.strip.show_strip(None, (), ())
-            self.findings.fill([])
-            self.facts.set(**dict.fromkeys(self.facts.values, "–"))
+            self.show_nothing(said)
             return
+        self.problem.setText(said)
         record, inspection = self.record, self.record.inspection
         nok = tuple(kind is not None for kind in segment_kinds(record))
         try:
@@ -105,18 +114,26 @@ class RecordView(QWidget):
         steps = (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms)
         shown = {True: translate("history", "yes"), False: translate("history", "no"), None: translate("history", "unknown")}
         self.facts.set(
-            verdict=f"{record.verdict}{reason}",
+            verdict=f"{data(record.verdict)}{reason}",
             serial=record.serial or "–",
-            trigger=record.trigger_id or "–",
+            part=f"{record.inspection_id} · {record.trigger_id or '–'}",
             time=f"{record.grabbed_at.astimezone():%d.%m.%Y %H:%M:%S}",
             shown=shown[row.shown_to_plc],
-            quality="–" if q is None else f"{q.mean_dn:.0f} · {q.sharpness:.3f}",
-            ring="–" if ring is None else f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f}",
+            quality="–" if q is None else f"{q.mean_dn:.0f} · {q.sharpness:.3f} · {q.saturated_share:.1%}",
+            novelty="–" if inspection.novelty is None else f"{inspection.novelty:.2f}",
+            ring="–"
+            if ring is None
+            else f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f} · {ring.residual_px:.2f}",
             steps=" · ".join("–" if ms is None else f"{ms:.0f}" for ms in steps),
             limits="\n".join(_limits(p.thresholds)),
             model=f"{p.model_version} · {p.recipe}",
+            hash=f"{p.model_hash[:12]} · {p.config_crc:04X}",
             origin=f"{data(record.origin)} · {data(record.purpose)}",
         )
+
+
+def _ring(ring: Ring) -> str:
+    return f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f} · {ring.residual_px:.2f}"
 
 
 def _limits(t: Thresholds) -> list[str]:

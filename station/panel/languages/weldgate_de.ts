@@ -99,8 +99,24 @@
         <translation>Einstellungen</translation>
     </message>
     <message>
+        <source>saved and in use</source>
+        <translation>gespeichert und in Gebrauch</translation>
+    </message>
+    <message>
+        <source>the station refused the change (see its log), it was taken back</source>
+        <translation type="unfinished">die Station hat die Änderung abgelehnt (siehe ihre Logdatei), sie wurde zurückgenommen</translation>
+    </message>
+    <message>
         <source>log in as setter first</source>
         <translation>erst als Einrichter anmelden</translation>
+    </message>
+    <message>
+        <source>saved; the station is about to use it</source>
+        <translation>gespeichert; die Station übernimmt es gerade</translation>
+    </message>
+    <message>
+        <source>saved; no engine is there, it is used at the next start</source>
+        <translation type="unfinished">gespeichert; die Prüfung läuft nicht, es gilt ab dem nächsten Start</translation>
     </message>
 </context>
 <context>
@@ -211,7 +227,7 @@
     </message>
     <message>
         <source>no frame in time</source>
-        <translation>kein Bild in der Zeit</translation>
+        <translation>kein Bild rechtzeitig</translation>
     </message>
     <message>
         <source>deadline missed</source>
@@ -287,47 +303,47 @@
     </message>
     <message>
         <source>judge the part again; if it comes back, check that a part lies in the nest, and the camera&apos;s view</source>
-        <translation>Teil neu prüfen; kommt es wieder: prüfen, ob ein Teil im Nest liegt, und die Sicht der Kamera</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: prüfen, ob ein Teil im Nest liegt, und die Sicht der Kamera</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check the part&apos;s seat and the camera&apos;s position</source>
-        <translation>Teil neu prüfen; kommt es wieder: Sitz des Teils und Lage der Kamera prüfen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Sitz des Teils und Lage der Kamera prüfen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, set width and height of the camera as in the settings</source>
-        <translation>Teil neu prüfen; kommt es wieder: Breite und Höhe der Kamera wie in den Einstellungen setzen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Breite und Höhe der Kamera wie in den Einstellungen setzen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check network cable, switch and jumbo frames</source>
-        <translation>Teil neu prüfen; kommt es wieder: Netzkabel, Switch und Jumbo-Frames prüfen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Netzkabel, Switch und Jumbo-Frames prüfen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check the light and the exposure</source>
-        <translation>Teil neu prüfen; kommt es wieder: Licht und Belichtung prüfen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Licht und Belichtung prüfen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check focus and glass, and that the part stands still</source>
-        <translation>Teil neu prüfen; kommt es wieder: Fokus und Glas prüfen, und ob das Teil still steht</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Fokus und Glas prüfen, und ob das Teil still steht</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check power and cable of the camera</source>
-        <translation>Teil neu prüfen; kommt es wieder: Strom und Kabel der Kamera prüfen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Strom und Kabel der Kamera prüfen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check the trigger line and camera.timeout_ms</source>
-        <translation>Teil neu prüfen; kommt es wieder: Triggerleitung und camera.timeout_ms prüfen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Triggerleitung und camera.timeout_ms prüfen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, restart the station, restore the model file</source>
-        <translation>Teil neu prüfen; kommt es wieder: Station neu starten, Modelldatei wiederherstellen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Station neu starten, Modelldatei wiederherstellen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check the archive&apos;s disk</source>
-        <translation>Teil neu prüfen; kommt es wieder: Platte des Archivs prüfen</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Platte des Archivs prüfen</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, send the engine&apos;s log to the maker</source>
-        <translation>Teil neu prüfen; kommt es wieder: Protokoll der Prüfung an den Hersteller senden</translation>
+        <translation>Teil neu prüfen; tritt es erneut auf: Logdatei der Station an den Hersteller senden</translation>
     </message>
     <message>
         <source>no result within the deadline</source>
@@ -427,7 +443,7 @@
     </message>
     <message>
         <source>see the engine&apos;s log; the settings before are in use</source>
-        <translation>siehe Protokoll der Prüfung; die bisherigen Einstellungen gelten</translation>
+        <translation>siehe Logdatei der Station; die bisherigen Einstellungen gelten</translation>
     </message>
     <message>
         <source>login</source>
@@ -605,6 +621,70 @@
         <source>its picture is no longer kept</source>
         <translation>das Bild wird nicht mehr aufgehoben</translation>
     </message>
+    <message>
+        <source>another model judged it: where that saw defects is not known</source>
+        <translation>ein anderes Modell hat es beurteilt: wo das Fehler sah, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>not to be trusted: see Alarms</source>
+        <translation>nicht verlässlich: siehe Alarme</translation>
+    </message>
+    <message>
+        <source>masters are due: the PLC releases nothing</source>
+        <translation>Meisterteile sind fällig: die SPS gibt nichts frei</translation>
+    </message>
+    <message>
+        <source>a login of the level operator is needed</source>
+        <translation>eine Anmeldung als Bediener ist nötig</translation>
+    </message>
+    <message>
+        <source>a login of the level setter is needed</source>
+        <translation>eine Anmeldung als Einrichter ist nötig</translation>
+    </message>
+    <message>
+        <source>a login of the level quality is needed</source>
+        <translation>eine Anmeldung als Qualität ist nötig</translation>
+    </message>
+    <message>
+        <source>a login of the level admin is needed</source>
+        <translation>eine Anmeldung als Administrator ist nötig</translation>
+    </message>
+    <message>
+        <source>the second review needs the level quality</source>
+        <translation>die zweite Nachprüfung braucht die Stufe Qualität</translation>
+    </message>
+    <message>
+        <source>another window saves just now; save again</source>
+        <translation>ein anderes Fenster speichert gerade; noch einmal speichern</translation>
+    </message>
+    <message>
+        <source>service mode</source>
+        <translation>Service-Betrieb</translation>
+    </message>
+    <message>
+        <source>bit by hand</source>
+        <translation>Bit von Hand</translation>
+    </message>
+    <message>
+        <source>counters</source>
+        <translation>Zähler</translation>
+    </message>
+    <message>
+        <source>begins</source>
+        <translation>beginnt</translation>
+    </message>
+    <message>
+        <source>over</source>
+        <translation>beendet</translation>
+    </message>
+    <message>
+        <source>another one logs in</source>
+        <translation>ein anderer meldet sich an</translation>
+    </message>
+    <message>
+        <source>user changed</source>
+        <translation>Benutzer geändert</translation>
+    </message>
 </context>
 <context>
     <name>field</name>
@@ -752,10 +832,6 @@
         <translation>Seriennummer</translation>
     </message>
     <message>
-        <source>trigger</source>
-        <translation>Trigger</translation>
-    </message>
-    <message>
         <source>time</source>
         <translation>Zeit</translation>
     </message>
@@ -764,12 +840,20 @@
         <translation>von der SPS gesehen</translation>
     </message>
     <message>
-        <source>brightness · sharpness</source>
-        <translation>Helligkeit · Schärfe</translation>
+        <source>part · trigger</source>
+        <translation>Teil · Trigger</translation>
     </message>
     <message>
-        <source>ring x · y · r px</source>
-        <translation>Ring x · y · r px</translation>
+        <source>brightness · sharpness · saturated</source>
+        <translation>Helligkeit · Schärfe · übersteuert</translation>
+    </message>
+    <message>
+        <source>ring x · y · r · residual px</source>
+        <translation>Ring x · y · r · Abweichung px</translation>
+    </message>
+    <message>
+        <source>distance to the training images</source>
+        <translation type="unfinished">Abstand zu den Trainingsbildern</translation>
     </message>
     <message>
         <source>grab · find · unwrap · judge ms</source>
@@ -784,6 +868,10 @@
         <translation>Modell · Rezept</translation>
     </message>
     <message>
+        <source>model&apos;s hash · configuration</source>
+        <translation>Modell-Hash · Konfiguration</translation>
+    </message>
+    <message>
         <source>origin · purpose</source>
         <translation>Herkunft · Zweck</translation>
     </message>
@@ -794,6 +882,10 @@
     <message>
         <source>the record cannot be read</source>
         <translation>der Datensatz ist nicht lesbar</translation>
+    </message>
+    <message>
+        <source>no part</source>
+        <translation>kein Teil</translation>
     </message>
     <message>
         <source>its picture cannot be read</source>
@@ -886,6 +978,10 @@
         <translation>Anmerkung</translation>
     </message>
     <message>
+        <source>no word from the engine: the registers are as they last were</source>
+        <translation>die Prüfung meldet sich nicht: Register, wie sie zuletzt waren</translation>
+    </message>
+    <message>
         <source>Service mode</source>
         <translation>Service-Betrieb</translation>
     </message>
@@ -911,7 +1007,7 @@
     </message>
     <message>
         <source>Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:</source>
-        <translation>Wortfolge: TEST_U32 muss 16#12345678 (305419896) lesen, TEST_F32 123,456. Gesendete Worte:</translation>
+        <translation>Wortfolge: TEST_U32 muss 16#12345678 (305419896) ergeben, TEST_F32 123,456. Gesendete Worte:</translation>
     </message>
     <message>
         <source>If the PLC reads 16#56781234, exchange its words or set plc.low_word_first.</source>
@@ -965,6 +1061,14 @@
         <translation>Bild von dem, was gerade da liegt, aufnehmen und beurteilen; die SPS erfährt nichts</translation>
     </message>
     <message>
+        <source>Hold</source>
+        <translation>Halten</translation>
+    </message>
+    <message>
+        <source>The picture stays; lamp and counters go on</source>
+        <translation>Das Bild bleibt stehen; Lampe und Zähler laufen weiter</translation>
+    </message>
+    <message>
         <source>Defect map</source>
         <translation>Fehlerkarte</translation>
     </message>
@@ -993,12 +1097,20 @@
         <translation>DRIFTET</translation>
     </message>
     <message>
+        <source>HELD</source>
+        <translation>GEHALTEN</translation>
+    </message>
+    <message>
         <source>no picture of this part</source>
         <translation>kein Bild dieses Teils</translation>
     </message>
     <message>
         <source>defect map</source>
         <translation>Fehlerkarte</translation>
+    </message>
+    <message>
+        <source>segment</source>
+        <translation type="unfinished">Segment</translation>
     </message>
     <message>
         <source>no picture yet</source>
@@ -1036,8 +1148,8 @@
         <translation>Noch ist niemand bekannt: Wer einen Namen und eine PIN von mindestens 4 Ziffern angibt, wird Administrator.</translation>
     </message>
     <message>
-        <source>Operators need no login. After five wrong PINs a name is locked for a minute.</source>
-        <translation>Bediener brauchen keine Anmeldung. Nach fünf falschen PINs ist ein Name für eine Minute gesperrt.</translation>
+        <source>Watching needs no login, doing does. Five wrong PINs lock a name for a minute.</source>
+        <translation>Zusehen geht ohne Anmeldung, alles andere nicht. Fünf falsche PINs sperren einen Namen für eine Minute.</translation>
     </message>
     <message>
         <source>locked for a minute after five wrong PINs</source>
@@ -1159,6 +1271,10 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <source>log in as administrator first</source>
         <translation>erst als Administrator anmelden</translation>
     </message>
+    <message>
+        <source>Really remove?</source>
+        <translation>Wirklich entfernen?</translation>
+    </message>
 </context>
 <context>
     <name>recipe</name>
@@ -1240,7 +1356,7 @@ Jede Stufe darf, was die davor dürfen.</translation>
     </message>
     <message>
         <source>would be released (NOK → OK): possible escapes</source>
-        <translation>würden frei (NOK → OK): möglicher Durchschlupf</translation>
+        <translation>würden freigegeben (NOK → OK): möglicher Durchschlupf</translation>
     </message>
     <message>
         <source>would be refused (OK → NOK): possible false calls</source>
@@ -1268,7 +1384,7 @@ Jede Stufe darf, was die davor dürfen.</translation>
     </message>
     <message>
         <source>{n} parts: {released} would be released, {refused} refused</source>
-        <translation>{n} Teile: {released} würden frei, {refused} gesperrt</translation>
+        <translation>{n} Teile: {released} würden freigegeben, {refused} gesperrt</translation>
     </message>
     <message>
         <source>{n} parts that were too poor would be judged: nobody knows how</source>
@@ -1279,16 +1395,24 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>kein Teil dieses Rezepts im Archiv: niemand weiß, was die Grenzen bewirken</translation>
     </message>
     <message>
+        <source>{n} parts of another model, or unreadable, were left out</source>
+        <translation>{n} Teile eines anderen Modells oder unlesbare blieben außer Betracht</translation>
+    </message>
+    <message>
         <source>saved; no engine is there, it is used at the next start</source>
         <translation>gespeichert; die Prüfung läuft nicht, es gilt ab dem nächsten Start</translation>
     </message>
     <message>
-        <source>saved</source>
-        <translation>gespeichert</translation>
+        <source>saved; the station is about to use it</source>
+        <translation>gespeichert; die Station übernimmt es gerade</translation>
+    </message>
+    <message>
+        <source>saved and in use</source>
+        <translation>gespeichert und in Gebrauch</translation>
     </message>
     <message>
         <source>the station refused the change (see its log), it was taken back</source>
-        <translation>die Station hat die Änderung abgelehnt (siehe ihr Protokoll), sie wurde zurückgenommen</translation>
+        <translation>die Station hat die Änderung abgelehnt (siehe ihre Logdatei), sie wurde zurückgenommen</translation>
     </message>
 </context>
 <context>
@@ -1349,6 +1473,14 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Bericht…</translation>
     </message>
     <message>
+        <source>Counters to 0</source>
+        <translation>Zähler auf 0</translation>
+    </message>
+    <message>
+        <source>the counters of the page Live and of the PLC; noted in the journal</source>
+        <translation>die Zähler der Seite Live und der SPS; wird im Journal vermerkt</translation>
+    </message>
+    <message>
         <source>reasons</source>
         <translation>Gründe</translation>
     </message>
@@ -1369,6 +1501,10 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Schärfe</translation>
     </message>
     <message>
+        <source>saturated share</source>
+        <translation>übersteuerter Anteil</translation>
+    </message>
+    <message>
         <source>distance to the training images</source>
         <translation>Abstand zu den Trainingsbildern</translation>
     </message>
@@ -1383,6 +1519,14 @@ Jede Stufe darf, was die davor dürfen.</translation>
     <message>
         <source>NOK segments by angle</source>
         <translation>NOK-Segmente nach Winkel</translation>
+    </message>
+    <message>
+        <source>log in first (page Setup)</source>
+        <translation type="unfinished">erst anmelden (Seite Einrichten)</translation>
+    </message>
+    <message>
+        <source>no engine is there</source>
+        <translation type="unfinished">die Prüfung läuft nicht</translation>
     </message>
     <message>
         <source>reading records</source>
@@ -1453,6 +1597,10 @@ Jede Stufe darf, was die davor dürfen.</translation>
     <message>
         <source>Cancel</source>
         <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>something is still being done: wait for it or cancel it</source>
+        <translation>es läuft noch etwas: abwarten oder abbrechen</translation>
     </message>
 </context>
 </TS>

@@ -5,10 +5,11 @@ from collections import deque
 from datetime import datetime
 from enum import IntFlag
 
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QSignalBlocker, Qt, QTimer
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QComboBox, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout
 
-from station.errors import RecordError
+from station.errors import RecordError, WeldgateError
 from station.panel import theme
 from station.panel.card import Table, label, titled
 from station.panel.page import Page
@@ -45,6 +46,8 @@ class LinePage(Page):
             stretch=4,
         )
         self._words = label("", "quiet", wrap=True)
+        self._stale = label(translate("line", "no word from the engine: the registers are as they last were"), "problem")
+        self._stale.hide()
         self._problem = label("", "problem")
         self.service = QPushButton(translate("line", "Service mode"))
         self.service.setCheckable(True)
@@ -60,6 +63,7 @@ class LinePage(Page):
         session.user_changed.connect(self._on_service)
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._read_edges)
+        self._timer.timeout.connect(self._on_status)
         self._timer.start(REFRESH_MS)
         self._on_status()
         self._on_service()
@@ -91,19 +95,22 @@ class LinePage(Page):
         column = QVBoxLayout(self)
         column.addWidget(bits)
         column.addLayout(hand)
+        column.addWidget(self._stale)
         column.addWidget(self._words)
         column.addWidget(below, 1)
 
     def _on_status(self) -> None:
-        status = self._session.status
+        status, there = self._session.status, self._session.engine_there
         if status is None or not status.status_words or not (self.isVisible() or self.registers.rowCount() == 0):
             return
+        self._stale.setVisible(not there)
+        self.registers.setEnabled(there)
         values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(STATUS_START, list(status.status_words))
         held = {"CONTROL": Control(int(str(values["CONTROL"])) & 0xFF), "STATUS": status.status}
         c = theme.colors()
         for (register, flag), lamp in self._lamps.items():
-            on = bool(flag & held[register])
-            said = f"● {flag.name}" if on else f"○ {flag.name}"
+            on = there and bool(flag & held[register])
+            said = f"● {flag.name}" if on else f"○ {flag.name}" if there else f"? {flag.name}"
             if lamp.text() != said:
                 lamp.setText(said)
                 on_style = f"background: {c.accent}; color: {c.background}; font-weight: 700;"
@@ -122,23 +129,30 @@ class LinePage(Page):
         session = self._session
         self.service.setChecked(session.service is not None)
         self.service.setEnabled(session.may(Level.SETTER))
-        self.bits.setEnabled(session.service is not None)
+        self.bits.setEnabled(session.service is not None and session.may(Level.SETTER))
         hint = "" if session.may(Level.SETTER) else translate("line", "log in as setter first (page Setup)")
         self._problem.setText(hint)
-        if session.service is None:
-            self.bits.setCurrentIndex(0)
+        with QSignalBlocker(self.bits):
+            self.bits.setCurrentIndex(max(0, self.bits.findData(0 if session.service is None else session.service.bit)))
 
     def _toggle_service(self) -> None:
         session = self._session
         if session.service is not None:
             session.end_service()
-        elif session.user is not None and session.may(Level.SETTER):
-            session.serve(Service(0.0, session.user.name))
+        elif session.user is not None:
+            self._serve(Service(0.0, session.user.name))
 
     def _set_bit(self) -> None:
         service = self._session.service
         if service is not None:
-            self._session.serve(Service(0.0, service.who, bit=int(self.bits.currentData())))
+            self._serve(Service(0.0, service.who, bit=int(self.bits.currentData())))
+
+    def _serve(self, service: Service) -> None:
+        try:
+            self._session.serve(service)
+        except WeldgateError as error:
+            self._on_service()
+            self._problem.setText(data(str(error)))
 
     def _read_edges(self) -> None:
         if not (self.isVisible() or not self._edges):
@@ -153,6 +167,11 @@ class LinePage(Page):
         self._edges.extend(new)
         rows = [(_time(e.time), data(e.by), e.name, str(e.value), data(e.note) if e.note else "") for e in reversed(self._edges)]
         self.edges.fill(rows)
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        """What came while nobody looked."""
+        super().showEvent(event)
+        self._on_status()
 
     def close_page(self) -> None:
         """Stop following."""

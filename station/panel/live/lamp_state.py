@@ -5,7 +5,8 @@ from enum import StrEnum
 
 from station.domain import Origin, Purpose, Verdict
 from station.events import PartEvent, StatusEvent
-from station.plc.registers import Offline
+from station.plc.alarms import Alarm
+from station.plc.registers import Offline, VerdictCode
 
 STATUS_LOST_S = 2.0
 FRESH_S = 3.0
@@ -48,16 +49,18 @@ class Lamp:
     more: str = ""
 
 
-def lamp(status: StatusEvent | None, status_age_s: float, part: PartEvent | None, part_age_s: float) -> Lamp:
-    """State of the lamp from what was last heard and how long ago."""
-    if status is None or status_age_s > STATUS_LOST_S:
+def lamp(status: StatusEvent | None, part: PartEvent | None, now_s: float) -> Lamp:
+    """State of the lamp from what was last heard and when it was sent; `now_s`: monotonic time.
+
+    Green stands for a fresh OK that the PLC reads and takes: of this run of the engine, while nothing keeps the station off the line.
+    """
+    if status is None or now_s - status.at_s > STATUS_LOST_S:
         return Lamp("OFFLINE", "○", Tone.QUIET, 1.0, "no word from the engine")
     if status.service:
         return Lamp("SERVICE", "⚙", Tone.TEST, 1.0, "works on the station", status.service)
-    lost = status.offline in (Offline.PLC_SILENT, Offline.CAMERA_LOST, Offline.STATION_STALLED)
-    good = part is not None and part.record.verdict is Verdict.OK
-    if part is not None and part_age_s <= GONE_S and not (good and lost):
-        return _of_part(part, _fade(part_age_s))
+    age_s = 1e9 if part is None or part.at_s < status.started_s else now_s - part.at_s
+    if part is not None and age_s <= GONE_S and not (part.told is VerdictCode.OK and status.offline is not Offline.NONE):
+        return _of_part(part, Alarm.MASTERS_DUE in status.alarms, _fade(age_s))
     if status.offline is Offline.PLC_SILENT:
         return Lamp("PLC LOST", "⚠", Tone.WARN, 1.0, "the PLC's heartbeat stands still")
     if status.offline is Offline.CAMERA_LOST:
@@ -67,16 +70,20 @@ def lamp(status: StatusEvent | None, status_age_s: float, part: PartEvent | None
     return Lamp("NO VERDICT", "–", Tone.QUIET, 1.0, "waiting for a part")
 
 
-def _of_part(part: PartEvent, strength: float) -> Lamp:
+def _of_part(part: PartEvent, masters_due: bool, strength: float) -> Lamp:
     record = part.record
-    reason = "" if record.inspection.reason is None else str(record.inspection.reason)
-    if record.purpose is Purpose.TEST:
-        return Lamp("TEST", "T", Tone.TEST, strength, "test picture", str(record.verdict))
-    if record.verdict is Verdict.ERROR or not (part.shown_to_plc or record.purpose is Purpose.GOLDEN):
-        return Lamp("ERROR", "!", Tone.WARN, strength, reason or "result came too late for the PLC")
-    if record.purpose is Purpose.GOLDEN or record.origin is Origin.REPLAY:
-        return Lamp("TEST", "T", Tone.TEST, strength, "master" if record.purpose is Purpose.GOLDEN else "replay", str(record.verdict))
-    if record.verdict is Verdict.OK:
+    reason, found = "" if record.inspection.reason is None else str(record.inspection.reason), str(record.verdict)
+    if record.purpose is not Purpose.PART:
+        return Lamp("TEST", "T", Tone.TEST, strength, "master" if record.purpose is Purpose.GOLDEN else "test picture", found)
+    if part.told is VerdictCode.ERROR:
+        late = record.verdict is not Verdict.ERROR
+        return Lamp("ERROR", "!", Tone.WARN, strength, "result came too late for the PLC" if late else reason)
+    if part.told is VerdictCode.TEST:
+        why = "replay" if record.origin is Origin.REPLAY else "not to be trusted: see Alarms"
+        return Lamp("TEST", "T", Tone.TEST, strength, why, found)
+    if part.told is VerdictCode.OK and masters_due:
+        return Lamp("TEST", "T", Tone.TEST, strength, "masters are due: the PLC releases nothing", found)
+    if part.told is VerdictCode.OK:
         return Lamp("OK", "✓", Tone.GOOD, strength, "21 of 21 segments")
     return Lamp("NOK", "✗", Tone.BAD, strength, reason)
 

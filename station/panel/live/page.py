@@ -3,22 +3,26 @@
 import time
 
 from PySide6.QtCore import QTimer
-from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QHideEvent, QImage
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
-from station.domain import SEGMENTS, Verdict
+from station.domain import SEGMENTS, Purpose
+from station.errors import WeldgateError
+from station.events import PartEvent, Preview
 from station.panel.card import Facts, label, titled
 from station.panel.live.clock_face import ClockFace
 from station.panel.live.lamp_state import lamp
+from station.panel.live.score_history import ScoreHistory
 from station.panel.live.strip_view import StripView
 from station.panel.live.verdict_lamp import VerdictLamp
 from station.panel.live.weld_view import WeldView
 from station.panel.page import Page
 from station.panel.pictures import drawn, nok_scores, strip_image
 from station.panel.session import Session
-from station.panel.words import translate
+from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.settings import for_recipe
+from station.users import Level
 
 AGE_MS = 200
 
@@ -46,19 +50,30 @@ class LivePage(Page):
             columns=2,
         )
         self._nok_strip, self._nok_text = StripView(70), label("–", "quiet")
+        self._nok_shown: tuple[int, bool] | None = None
+        """Number of the pinned part, and whether its picture had come."""
+        self.scores, self._segment = ScoreHistory(), 0
+        self.strip.touched.connect(self._show_scores)
+        self.scores.touched.connect(lambda: self._angles.setCurrentWidget(self.clock))
         self.test = QPushButton(translate("live", "Test picture"))
         self.test.setToolTip(translate("live", "Take a picture of what lies there now and judge it; the PLC is told nothing"))
-        self.test.clicked.connect(lambda: session.test_picture())
+        self.test.clicked.connect(self._ask_test)
+        self.hold = QPushButton(translate("live", "Hold"))
+        self.hold.setToolTip(translate("live", "The picture stays; lamp and counters go on"))
+        self.hold.setCheckable(True)
+        self.hold.toggled.connect(self._show_picture)
+        self._held: Preview | None = None
         self.show_map = QPushButton(translate("live", "Defect map"))
         self.show_map.setToolTip(translate("live", "Where the network sees defects in the last NOK part"))
         self.show_map.clicked.connect(self._ask_map)
         self._work = WorkBar()
-        self._work.done.connect(self._nok_strip.show_map)
-        self._work.failed.connect(lambda why: self._nok_text.setText(why))
+        self._work.done.connect(self._on_map)
+        self._work.failed.connect(lambda why: self._nok_text.setText(data(why)))
         self._lay_out()
         session.status_changed.connect(self._on_status)
         session.part_came.connect(self._on_part)
         session.preview_came.connect(self._on_preview)
+        session.user_changed.connect(self.age)
         self._ageing = QTimer(self)
         self._ageing.timeout.connect(self.age)
         self._ageing.start(AGE_MS)
@@ -74,9 +89,12 @@ class LivePage(Page):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.lamp, 3)
         column.addWidget(self.facts)
-        column.addWidget(titled(translate("live", "NOK segments of the last parts"), self.clock), 3)
+        self._angles = QStackedWidget()
+        for widget in (self.clock, self.scores):
+            self._angles.addWidget(widget)
+        column.addWidget(titled(translate("live", "NOK segments of the last parts"), self._angles), 3)
         buttons = QHBoxLayout()
-        for button in (self.test, self.show_map):
+        for button in (self.test, self.show_map, self.hold):
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
             buttons.addWidget(button)
         column.addLayout(buttons)
@@ -112,7 +130,7 @@ class LivePage(Page):
         last = self._session.last
         if last is None:
             return
-        event, record = last.event, last.event.record
+        event, record = last, last.record
         t = record.inspection.timing
         steps = (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms, event.record_ms, event.publish_ms)
         drifting = event.drift is not None and event.drift.alarm
@@ -121,65 +139,112 @@ class LivePage(Page):
         cycle = f"{sum(ms for ms in steps if ms is not None):.0f} ms"
         self.facts.set(part=record.inspection_id, serial=record.serial or "–", picture=picture, cycle=cycle)
         counts = [0] * SEGMENTS
-        for heard in self._session.parts:
-            for index, nok in enumerate(heard.event.seg_nok):
+        for part in self._session.parts:
+            for index, nok in enumerate(part.seg_nok if part.record.purpose is Purpose.PART else ()):
                 counts[index] += nok
         self.clock.show_counts(tuple(counts))
+        if self._angles.currentWidget() is self.scores:
+            self._show_scores(self._segment)
         self._show_picture()
+        self._show_pinned()
         self.age()
 
     def _on_preview(self) -> None:
         self._show_picture()
+        self._show_pinned()
+
+    def _show_pinned(self) -> None:
         pinned = self._session.last_nok
-        self.show_map.setEnabled(pinned is not None)
+        self.show_map.setEnabled(pinned is not None and pinned.preview is not None)
         if pinned is not None:
-            event, preview = pinned
-            record = event.record
-            text = f"{record.inspection_id}  {record.serial}  {record.grabbed_at.astimezone():%H:%M:%S}"
-            if text != self._nok_text.text():
-                self._nok_text.setText(text)
-                self._nok_strip.show_strip(strip_image(preview), nok_scores(record), event.seg_nok)
+            part, preview = pinned.part, pinned.preview
+            shown = part.record.inspection_id, preview is not None
+            if shown != self._nok_shown:
+                self._nok_shown = shown
+                self._nok_text.setText(_caption(part))
+                self._nok_strip.show_strip(None if preview is None else strip_image(preview), nok_scores(part.record), part.seg_nok)
 
     def _show_picture(self) -> None:
         """The last part's own picture; else, darkened, the one before, and said so."""
         last, preview = self._session.last, self._session.preview
-        if preview is None or last is None:
+        if last is None or (self.hold.isChecked() and self._held is not None):
             return
-        record = last.event.record
-        if preview.inspection_id == record.inspection_id:
-            self.weld.show_weld(drawn(preview, last.event))
-            self.strip.show_strip(strip_image(preview), nok_scores(record), last.event.seg_nok)
+        self._held = None
+        if preview is not None and preview.inspection_id == last.record.inspection_id:
+            if self.hold.isChecked():
+                self._held = preview
+            held = "  ·  " + translate("live", "HELD") if self.hold.isChecked() else ""
+            self.weld.show_weld(drawn(preview, last), caption=_caption(last) + held)
+            self.strip.show_strip(strip_image(preview), nok_scores(last.record), last.seg_nok)
         else:
-            note = translate("live", "no picture of this part") + f"\n({preview.inspection_id})"
-            self.weld.show_weld(drawn(preview, None), note)
-            self.strip.show_strip(None, nok_scores(record), last.event.seg_nok)
+            before = "" if preview is None else f"\n({preview.inspection_id})"
+            note = translate("live", "no picture of this part") + before
+            self.weld.show_weld(None if preview is None else drawn(preview, None), note)
+            self.strip.show_strip(None, nok_scores(last.record), last.seg_nok)
 
     def age(self) -> None:
         """Lamps fade with time."""
         session = self._session
         last, now = session.last, time.monotonic()
         status = session.status
-        self.test.setEnabled(session.engine_there and status is not None and status.camera_there)
-        part_age_s = now - last.at_s if last is not None else 1e9
-        foot = "" if last is None else f"{last.event.record.serial or last.event.record.inspection_id} · {min(part_age_s, 9999):.0f} s"
-        self.lamp.show_lamp(lamp(status, session.status_age_s, last.event if last else None, part_age_s), foot)
+        there = session.engine_there and status is not None and status.camera_there
+        self.test.setEnabled(there and session.may(Level.OPERATOR))
+        foot = "" if last is None else f"{last.record.serial or last.record.inspection_id} · {_ago(now - last.at_s)}"
+        self.lamp.show_lamp(lamp(status, last, now), foot)
 
     def _ask_map(self) -> None:
         pinned = self._session.last_nok
-        if pinned is None or pinned[0].record.verdict is not Verdict.NOK:
+        if pinned is None:
             return
-        record, folder = pinned[0].record, self._session.folder
+        record, folder = pinned.part.record, self._session.folder
         settings, number = self._session.settings, record.provenance.recipe
 
-        def work(_told: Told) -> QImage:
+        def work(_told: Told) -> tuple[int, QImage]:
             from station.panel.kept import defect_map  # only who asks pays for the network
             from station.recipe import load_inspector
 
-            return defect_map(load_inspector(for_recipe(settings, number))[0].classifier, folder, record)
+            return record.inspection_id, defect_map(load_inspector(for_recipe(settings, number))[0].classifier, folder, record)
 
         self._work.start(translate("live", "defect map"), work)
+
+    def _ask_test(self) -> None:
+        try:
+            self._session.test_picture()
+        except WeldgateError as error:
+            self._nok_text.setText(data(str(error)))
+
+    def _on_map(self, made: tuple[int, QImage]) -> None:
+        number, overlay = made
+        if self._nok_shown is not None and self._nok_shown[0] == number:  # or another part has been pinned since
+            self._nok_strip.show_map(overlay)
+
+    def _show_scores(self, segment: int) -> None:
+        """Of the last parts, oldest first."""
+        self._segment = segment
+        seen = [p for p in self._session.parts if p.record.purpose is Purpose.PART and p.record.inspection.scores]
+        scores = [p.record.inspection.scores[segment].nok for p in seen]
+        parts, name = translate("live", "parts"), translate("live", "segment")
+        self.scores.show_scores(scores, [p.seg_nok[segment] for p in seen], f"{name} {segment + 1} · {len(seen)} {parts}")
+        self._angles.setCurrentWidget(self.scores)
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
+        """Nobody looks at what is held."""
+        self.hold.setChecked(False)
+        super().hideEvent(event)
 
     def close_page(self) -> None:
         """Nothing is left running."""
         self._ageing.stop()
         self._work.close_work()
+
+
+def _caption(part: PartEvent) -> str:
+    record = part.record
+    return f"{record.inspection_id}  {record.serial}  {record.grabbed_at.astimezone():%H:%M:%S}"
+
+
+def _ago(age_s: float) -> str:
+    for unit, length_s in (("d", 86_400), ("h", 3600), ("min", 60)):
+        if age_s >= 2 * length_s:
+            return f"{age_s / length_s:.0f} {unit}"
+    return f"{age_s:.0f} s"

@@ -29,7 +29,7 @@ class StripView(QWidget):
         self._image, self._scores, self._nok, self._map = image, scores, nok, None
         self.update()
 
-    def show_map(self, overlay: QImage | None) -> None:
+    def show_map(self, overlay: QImage) -> None:
         """ARGB picture over the strip."""
         self._map = overlay
         self.update()

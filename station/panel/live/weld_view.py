@@ -30,13 +30,13 @@ class WeldView(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.drawn: Drawn | None = None
-        self._note = ""
+        self._note, self._caption = "", ""
         self.setMinimumSize(320, 280)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
-    def show_weld(self, drawn: Drawn | None, note: str = "") -> None:
-        """`note`: stands over the picture, which is darkened."""
-        self.drawn, self._note = drawn, note
+    def show_weld(self, drawn: Drawn | None, note: str = "", caption: str = "") -> None:
+        """`note`: stands over the picture, which is darkened; `caption`: in its corner."""
+        self.drawn, self._note, self._caption = drawn, note, caption
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
@@ -58,6 +58,15 @@ class WeldView(QWidget):
             k = d.scale * zoom
             center = corner + QPointF((d.ring.center_x_px - d.origin_px[0]) * k, (d.ring.center_y_px - d.origin_px[1]) * k)
             _overlay(painter, d, center, d.ring.radius_px * k, STRIP_ROWS / 2 * k)
+        if self._caption and not self._note:
+            font = painter.font()
+            font.setPixelSize(15)
+            font.setBold(False)
+            painter.setFont(font)
+            box = painter.boundingRect(QRectF(10, 8, self.width() - 20, 60), 0, self._caption)
+            painter.fillRect(box.adjusted(-4, -2, 4, 2), QColor(16, 18, 20, 170))
+            painter.setPen(QColor("#e6e8ea"))
+            painter.drawText(box, 0, self._caption)
 
     def _say(self, painter: QPainter, text: str) -> None:
         font = painter.font()

@@ -3,7 +3,7 @@
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from station.domain import Ring
-from station.errors import RecordError, SettingsError
+from station.errors import WeldgateError
 from station.events import LookEvent
 from station.panel.card import Facts, label, titled
 from station.panel.live.weld_view import Drawn, WeldView
@@ -15,7 +15,7 @@ from station.panel.setup.field import NumberField
 from station.panel.statistics.charts import Chart
 from station.panel.words import data, translate
 from station.requests import Service
-from station.settings import PylonSettings
+from station.settings import PylonSettings, for_recipe
 from station.users import Level
 
 
@@ -33,7 +33,7 @@ class CameraPage(Page):
         self.exposure, self.gain = NumberField(1.0, 1_000_000.0, "µs"), NumberField(0.0, 48.0, "dB")
         self.reason, self.save = QLineEdit(), QPushButton(translate("camera", "Save"))
         self.reason.setPlaceholderText(translate("camera", "reason (needed)"))
-        self.problem = label("", "problem", wrap=True)
+        self.problem, self.said = label("", "problem", wrap=True), label("", "quiet", wrap=True)
         self.weld, self.histogram = WeldView(), Chart(translate("camera", "grey levels"))
         self.facts = Facts(
             {
@@ -53,6 +53,7 @@ class CameraPage(Page):
             form.addWidget(field, place, 1)
         form.addWidget(self.reason, 2, 0, 1, 2)
         form.addWidget(self.save, 3, 0, 1, 2)
+        form.addWidget(self.said, 4, 0, 1, 2)
         side = QWidget()
         side.setFixedWidth(420)
         column = QVBoxLayout(side)
@@ -71,8 +72,10 @@ class CameraPage(Page):
         self.save.clicked.connect(self._save)
         session.look_came.connect(self._on_look)
         session.preview_came.connect(self._on_preview)
-        session.user_changed.connect(self._look)
-        session.change_refused.connect(self._fill)
+        session.user_changed.connect(self._on_user)
+        session.settings_changed.connect(self._fill)
+        session.change_used.connect(self._on_used)
+        session.change_refused.connect(self._on_refused)
         session.service_changed.connect(self._look)
         self._fill()
 
@@ -82,6 +85,20 @@ class CameraPage(Page):
             self.exposure.set(camera.exposure_us)
             self.gain.set(camera.gain_db)
         self._look()
+
+    def _on_user(self) -> None:
+        self.reason.clear()
+        self.said.setText("")
+        self._look()
+
+    def _on_used(self) -> None:
+        if self.said.text():
+            self.said.setText(translate("camera", "saved and in use"))
+
+    def _on_refused(self) -> None:
+        self._fill()
+        self.said.setText("")
+        self.problem.setText(translate("camera", "the station refused the change (see its log), it was taken back"))
 
     def _look(self) -> None:
         session, camera = self._session, self._session.settings.camera
@@ -102,16 +119,21 @@ class CameraPage(Page):
 
     def _toggle(self) -> None:
         session = self._session
-        if session.service is not None:
+        if session.service is not None and session.service.look:
             session.end_service()
-        elif session.user is not None and session.may(Level.SETTER):
+        elif session.user is not None:
             self._best = 0.0
-            session.serve(Service(0.0, session.user.name, look=True, exposure_us=self.exposure.value, gain_db=self.gain.value))
+            try:
+                session.serve(Service(0.0, session.user.name, look=True, exposure_us=self.exposure.value, gain_db=self.gain.value))
+            except WeldgateError as error:
+                self._look()
+                self.problem.setText(data(str(error)))
 
     def _on_look(self, event: LookEvent) -> None:
         self._ring = event.ring
         self._best = max(self._best, event.sharpness)
-        weld = self._session.settings.weld
+        status = self._session.status
+        weld = for_recipe(self._session.settings, 1 if status is None else status.recipe).weld
         expected = weld.radius_mm * 1000 / weld.um_per_px
         ring = event.ring
         self.facts.set(
@@ -140,12 +162,14 @@ class CameraPage(Page):
         used = {"exposure_us": (camera.exposure_us, self.exposure.value), "gain_db": (camera.gain_db, self.gain.value)}
         new: dict[tuple[str, ...], tuple[object, object]] = {("camera", key): pair for key, pair in used.items() if pair[0] != pair[1]}
         try:
-            change(self._session, new, self.reason.text())
-        except (SettingsError, RecordError) as error:
-            self.problem.setText(str(error))
+            told = change(self._session, Level.SETTER, new, self.reason.text())
+        except WeldgateError as error:
+            self.problem.setText(data(str(error)))
             return
         self.reason.clear()
         self._fill()
+        about = translate("camera", "saved; the station is about to use it")
+        self.said.setText(about if told else translate("camera", "saved; no engine is there, it is used at the next start"))
 
     def close_page(self) -> None:
         """The session ends service mode."""

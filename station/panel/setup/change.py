@@ -3,15 +3,14 @@
 What cannot be used is taken back, in file and journal: at its next start the engine would not come up.
 """
 
-import copy
 from collections.abc import Mapping
-from typing import Any
 
 from station import adjustments
 from station.archive.journal import Kind, append
 from station.errors import SettingsError
 from station.panel.session import Session
 from station.settings_file import load
+from station.users import Level
 
 MIN_REASON = 5
 """Characters of a reason."""
@@ -20,36 +19,42 @@ Values = Mapping[tuple[str, ...], tuple[object, object]]
 """Before and after of each key, named from the top: ("recipes", "1", "model", "hole_threshold")."""
 
 
-def change(session: Session, values: Values, reason: str) -> bool:
-    """Whether the engine could be told. Raises SettingsError, RecordError; then nothing was changed."""
-    if session.user is None or len(reason.strip()) < MIN_REASON:
-        raise SettingsError("a login and a reason are needed")
-    before, who = adjustments.read(session.path), session.user.name
-    changes: dict[str, Any] = copy.deepcopy(before)
-    for place, (_, after) in values.items():
-        level = changes
-        for name in place[:-1]:
-            level = level.setdefault(name, {})
-        level[place[-1]] = after
+def change(session: Session, level: Level, values: Values, reason: str) -> bool:
+    """Whether the engine could be told. Raises LoginError below `level`, SettingsError, RecordError; then nothing was changed."""
+    who = session.who(level).name
+    if len(reason.strip()) < MIN_REASON:
+        raise SettingsError("a reason is needed")
 
     def note(back: bool, why: str) -> None:
         for place, (old, new) in values.items():
             pair = (_said(new), _said(old)) if back else (_said(old), _said(new))
             append(session.folder, Kind.SETTING, who, ".".join(place), *pair, why)
 
-    def undo() -> None:
-        adjustments.write(session.path, before)
-        session.settings = load(session.path)
-        note(True, "refused by the station")
+    with adjustments.editing(session.path):
+        before = adjustments.read(session.path)
+        note(False, reason.strip())
+        try:
+            _put(session, {place: new for place, (_, new) in values.items()})
+        except SettingsError:
+            _put(session, {place: adjustments.at(before, place) for place in values})
+            note(True, "refused by the station")
+            raise
 
-    note(False, reason.strip())
-    try:
-        adjustments.write(session.path, changes)
-        session.settings = load(session.path)
-    except SettingsError:
-        undo()
-        raise
+    def undo() -> None:
+        with adjustments.editing(session.path):
+            _put(session, {place: adjustments.at(before, place) for place in values})
+            note(True, "refused by the station")
+
     return session.reload(undo)
+
+
+def _put(session: Session, values: Mapping[tuple[str, ...], object]) -> None:
+    """Write values over those of the file; None takes one out."""
+    changes = adjustments.read(session.path)
+    for place, value in values.items():
+        changes = adjustments.put(changes, place, value)
+    adjustments.write(session.path, changes)
+    session.settings = load(session.path)
 
 
 def _said(value: object) -> str:

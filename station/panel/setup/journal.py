@@ -71,7 +71,15 @@ class JournalPage(Page):
                 after = translate("journal", "saved") if e.after else translate("journal", "removed")
             when = datetime.fromisoformat(e.at).astimezone()
             rows.append(
-                (f"{when:%d.%m.%Y %H:%M:%S}", data(e.who), data(e.kind), e.subject, before, data(after) if after else "", data(e.reason))
+                (
+                    f"{when:%d.%m.%Y %H:%M:%S}",
+                    data(e.who),
+                    data(e.kind),
+                    data(e.subject),
+                    data(before),
+                    data(after) if after else "",
+                    data(e.reason),
+                )
             )
         self.table.fill(rows)
 

@@ -73,6 +73,7 @@ class LoginPage(Page):
 
     def _on_user(self) -> None:
         user = self._session.user
+        self.pin.clear()
         self.log_out.setEnabled(user is not None)
         self.problem.setText("")
         self._who.setText(translate("login", "nobody is logged in") if user is None else f"{user.name} · {data(user.level.name.lower())}")
@@ -86,7 +87,7 @@ class LoginPage(Page):
         self._hint.setText(
             translate("login", "Nobody is known yet: whoever gives a name and a PIN of at least 4 digits becomes administrator.")
             if first
-            else translate("login", "Operators need no login. After five wrong PINs a name is locked for a minute.")
+            else translate("login", "Watching needs no login, doing does. Five wrong PINs lock a name for a minute.")
         )
         chosen = self.name.currentText()
         self.name.clear()

@@ -49,7 +49,11 @@ class PeoplePage(Page):
         row.addLayout(right, 1)
         self.save.clicked.connect(self._save)
         self.remove.clicked.connect(self._remove)
+        self._sure = ""
+        """Whose removal was asked for once."""
+        self.name.textChanged.connect(self._unsure)
         self.table.currentCellChanged.connect(self._on_chosen)
+        session.user_changed.connect(self.pin.clear)
         session.user_changed.connect(self.refresh)
         self.refresh()
 
@@ -74,8 +78,18 @@ class PeoplePage(Page):
         self._do(lambda by: save_user(self._session.folder, by, self.name.text(), self.level.currentData(), self.pin.text()))
         self.pin.clear()
 
+    def _unsure(self) -> None:
+        self._sure = ""
+        self.remove.setText(translate("people", "Remove"))
+
     def _remove(self) -> None:
-        self._do(lambda by: remove_user(self._session.folder, by, self.name.text().strip()))
+        name = self.name.text().strip()
+        if self._sure != name:
+            self._sure = name
+            self.remove.setText(translate("people", "Really remove?"))
+            return
+        self._unsure()
+        self._do(lambda by: remove_user(self._session.folder, by, name))
 
     def _do(self, work: Callable[[str], object]) -> None:
         user = self._session.user
@@ -86,6 +100,8 @@ class PeoplePage(Page):
         except (LoginError, RecordError) as error:
             self.problem.setText(data(str(error)))
             return
+        if self.name.text().strip() == user.name:  # their own level or PIN
+            self._session.log_out("user changed")
         self.refresh()
 
     def close_page(self) -> None:

@@ -1,5 +1,7 @@
 """Limits of a recipe: what they would have done to the parts of the archive is shown before they can be saved, with a reason."""
 
+from dataclasses import dataclass, replace
+
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QComboBox, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
@@ -7,13 +9,13 @@ from station.archive.reader import Wanted, find, read_words
 from station.archive.whatif import WhatIf, what_if
 from station.classify.onnx import Classifier
 from station.classify.thresholds import Thresholds
-from station.errors import ModelError, RecordError, SettingsError
+from station.errors import ModelError, WeldgateError
 from station.panel.card import Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.setup.change import MIN_REASON, change
 from station.panel.setup.field import NumberField, SegmentLimits
-from station.panel.words import translate
+from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.records import Record
 from station.settings import Settings, for_recipe
@@ -33,8 +35,15 @@ FIELDS = {
 }
 
 
-Values = tuple[dict[str, float], dict[int, float]]
-"""Of the fields by key, of the single segments by number."""
+@dataclass(frozen=True, slots=True)
+class Values:
+    """What stands in the fields."""
+
+    recipe: int
+    limits: dict[str, float]
+    """By key."""
+    segments: dict[int, float]
+    """By number."""
 
 
 class RecipePage(Page):
@@ -43,10 +52,9 @@ class RecipePage(Page):
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self._in_use: dict[str, float] = {}
-        self._segments_in_use: dict[int, float] = {}
+        self._in_use: Values | None = None
         self._asked: Values | None = None
-        """Values of the last what-if."""
+        """Values of the what-if that is shown."""
         self.recipe = QComboBox()
         word = translate("recipe", "recipe")
         for number in sorted({1, *session.settings.recipes}):
@@ -109,39 +117,56 @@ class RecipePage(Page):
         self.recipe.currentIndexChanged.connect(self._fill)
         self._work.done.connect(self._on_done)
         self._work.failed.connect(self.problem.setText)
-        session.user_changed.connect(self._look)
+        session.user_changed.connect(self._on_user)
+        session.settings_changed.connect(self._fill)
+        session.change_used.connect(self._on_used)
         session.change_refused.connect(self._on_refused)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         """The limits of a model are in its file: loaded once they are looked at."""
-        if not self._in_use:
+        if self._in_use is None:
             self._fill()
         super().showEvent(event)
 
     def _fill(self) -> None:
         """The limits in use."""
-        settings = for_recipe(self._session.settings, int(self.recipe.currentData()))
+        number = int(self.recipe.currentData())
+        settings = for_recipe(self._session.settings, number)
         try:
-            self._in_use = _limits(settings)
-            self._segments_in_use = dict(settings.model.segment_thresholds)
+            self._in_use = Values(number, _limits(settings), dict(settings.model.segment_thresholds))
         except ModelError as error:
             self.problem.setText(str(error))
             return
-        self._asked = None
-        self.segments.set(self._segments_in_use)
+        self.segments.set(self._in_use.segments)
         for key, field in self.fields.items():
-            field.set(self._in_use[key])
+            field.set(self._in_use.limits[key])
         self._look()
 
     def values(self) -> Values | None:
         """What stands in the fields; None if something is not allowed."""
         numbers = {key: field.value for key, field in self.fields.items() if field.value is not None}
         segments = self.segments.value
-        return None if len(numbers) < len(FIELDS) or segments is None else (numbers, segments)
+        return None if len(numbers) < len(FIELDS) or segments is None else Values(int(self.recipe.currentData()), numbers, segments)
+
+    def _on_user(self) -> None:
+        """What one has typed and seen is not for the next."""
+        self.reason.clear()
+        self._forget()
+        self._look()
+
+    def _forget(self) -> None:
+        """What other values would have done."""
+        self._asked = None
+        self.said.setText("")
+        for table in (self.released, self.refused):
+            table.fill(())
 
     def _look(self) -> None:
         values = self.values()
-        changed = values is not None and values != ({k: float(f"{v:.6g}") for k, v in self._in_use.items()}, self._segments_in_use)
+        if self._asked is not None and values != self._asked:
+            self._forget()
+        used = self._in_use
+        changed = used is not None and values is not None and values != replace(used, limits=_rounded(used.limits))
         self.ask.setEnabled(changed and not self._work.busy)
         allowed = self._session.may(Level.QUALITY)
         self.save.setEnabled(changed and allowed and values == self._asked and len(self.reason.text().strip()) >= MIN_REASON)
@@ -156,30 +181,31 @@ class RecipePage(Page):
         values, folder = self.values(), self._session.folder
         if values is None:
             return
-        new, segments = values
-        quality = self._session.settings.quality.model_copy(update={k: v for k, v in new.items() if FIELDS[k][0] == "quality"})
+        new, settings = values.limits, for_recipe(self._session.settings, values.recipe)
+        quality = settings.quality.model_copy(update={k: v for k, v in new.items() if FIELDS[k][0] == "quality"})
         sizes = (new["hole_min_mm"], new["missing_min_mm"])
-        thresholds = Thresholds(new["hole_threshold"], new["missing_threshold"], tuple(sorted(segments.items())), *sizes)
-        number = int(self.recipe.currentData())
+        thresholds = Thresholds(new["hole_threshold"], new["missing_threshold"], tuple(sorted(values.segments.items())), *sizes)
 
-        def work(told: Told) -> tuple[Values, WhatIf] | None:
-            rows = find(folder, Wanted(recipe=number, newest_first=True, limit=PARTS))
-            judge, records = (None if not rows else read_words(folder, rows[0])[0]), list[Record]()
+        def work(told: Told) -> tuple[Values, WhatIf, int] | None:
+            judge = Classifier(settings.model.path, 1).card.file_hash
+            rows = find(folder, Wanted(recipe=values.recipe, newest_first=True, limit=PARTS))
+            records = list[Record]()
             for count, row in enumerate(rows):
                 if count % 20 == 0 and not told(count, len(rows)):
                     return None
                 record, _ = read_words(folder, row)
-                if record is not None and judge is not None and record.provenance.model_hash == judge.provenance.model_hash:
+                if record is not None and record.provenance.model_hash == judge:  # scores of another model say nothing
                     records.append(record)
-            return values, what_if(records, thresholds, quality)
+            return values, what_if(records, thresholds, quality), len(rows) - len(records)
 
         self._work.start(translate("recipe", "scoring the archive again"), work)
         self._look()
 
     def _on_done(self, answer: object) -> None:
-        if not isinstance(answer, tuple):
+        if not isinstance(answer, tuple) or answer[0] != self.values():
+            self._look()
             return
-        self._asked, found = answer
+        self._asked, found, left_out = answer
         for table, flips in ((self.released, found.released), (self.refused, found.refused)):
             rows = [(str(f.inspection_id), f.serial, str(f.before), str(f.after), str(f.segment), f"{f.score:.3f}") for f in flips]
             table.fill(rows)
@@ -190,37 +216,49 @@ class RecipePage(Page):
         )
         unknown = translate("recipe", "{n} parts that were too poor would be judged: nobody knows how").format(n=found.unknown)
         none = translate("recipe", "no part of this recipe in the archive: nobody knows what the limits do")
-        self.problem.setText(none if not found.looked_at else unknown if found.unknown else "")
+        others = translate("recipe", "{n} parts of another model, or unreadable, were left out").format(n=left_out)
+        known = [text for text, told in ((unknown, found.unknown), (others, left_out)) if told]
+        self.problem.setText(none if not found.looked_at else "; ".join(known))
         self._look()
 
     def _save(self) -> None:
-        values, number = self.values(), str(self.recipe.currentData())
-        if values is None:
+        values, used = self.values(), self._in_use
+        if values is None or used is None:
             return
+        recipe, before = str(values.recipe), _rounded(used.limits)
         new: dict[tuple[str, ...], tuple[object, object]] = {}
-        for key, value in values[0].items():
-            if value != float(f"{self._in_use[key]:.6g}"):
-                new["recipes", number, FIELDS[key][0], key] = (self._in_use[key], value)
-        if values[1] != self._segments_in_use:
-            new["recipes", number, "model", "segment_thresholds"] = (self._segments_in_use, values[1])
+        for key, value in values.limits.items():
+            if value != before[key]:
+                new["recipes", recipe, FIELDS[key][0], key] = (used.limits[key], value)
+        if values.segments != used.segments:
+            new["recipes", recipe, "model", "segment_thresholds"] = (used.segments, values.segments)
         try:
-            told = change(self._session, new, self.reason.text())
-        except (SettingsError, RecordError) as error:
-            self.problem.setText(str(error))
+            told = change(self._session, Level.QUALITY, new, self.reason.text())
+        except WeldgateError as error:
+            self.problem.setText(data(str(error)))
             return
         self.reason.clear()
         self.problem.setText("" if told else translate("recipe", "saved; no engine is there, it is used at the next start"))
-        self.said.setText(translate("recipe", "saved"))
         self._fill()
+        self.said.setText(translate("recipe", "saved; the station is about to use it") if told else "")
+
+    def _on_used(self) -> None:
+        if self.said.text() and self._asked is None:
+            self.said.setText(translate("recipe", "saved and in use"))
 
     def _on_refused(self) -> None:
+        self._fill()
         self.said.setText("")
         self.problem.setText(translate("recipe", "the station refused the change (see its log), it was taken back"))
-        self._fill()
 
     def close_page(self) -> None:
         """Nothing is left running."""
         self._work.close_work()
+
+
+def _rounded(limits: dict[str, float]) -> dict[str, float]:
+    """As the fields show them."""
+    return {key: float(f"{value:.6g}") for key, value in limits.items()}
 
 
 def _limits(settings: Settings) -> dict[str, float]:

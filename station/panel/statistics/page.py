@@ -7,9 +7,10 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QComboBox, QFileDialog, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Wanted, find, read_records, read_words
+from station.archive.schema import NAME as INDEX
 from station.archive.statistics import Summary, summarise
 from station.domain import Verdict
-from station.errors import RecordError
+from station.errors import WeldgateError
 from station.panel.card import Table, label, titled
 from station.panel.live.clock_face import ClockFace
 from station.panel.page import Page
@@ -19,6 +20,8 @@ from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.records import Record
 from station.report.page import report
+from station.settings import for_recipe
+from station.users import Level
 
 PARTS = (100, 300, 1000, 5000)
 
@@ -45,6 +48,8 @@ class StatisticsPage(Page):
         self._work.done.connect(self._on_done)
         self._work.failed.connect(self._problem.setText)
         self.how_many.currentIndexChanged.connect(self.read)
+        session.user_changed.connect(self._on_user)
+        self._on_user()
         self._first = QTimer(self)
         self._first.setInterval(300)
         self._first.timeout.connect(self._when_seen)
@@ -59,9 +64,12 @@ class StatisticsPage(Page):
         self.again, self.report = QPushButton(translate("statistics", "Read again")), QPushButton(translate("statistics", "Report…"))
         self.again.clicked.connect(self.read)
         self.report.clicked.connect(self._ask_report)
-        self._work, self._problem = WorkBar(), label("", "problem")
+        self._work, self._problem, self._said = WorkBar(), label("", "problem"), label("", "quiet")
+        self.zero = QPushButton(translate("statistics", "Counters to 0"))
+        self.zero.setToolTip(translate("statistics", "the counters of the page Live and of the PLC; noted in the journal"))
+        self.zero.clicked.connect(self._reset)
         top = QHBoxLayout()
-        for widget in (self.how_many, self.again, self.report, self._problem):
+        for widget in (self.how_many, self.again, self.report, self.zero, self._problem, self._said):
             top.addWidget(widget)
         top.addStretch(1)
         self.clock = ClockFace()
@@ -70,16 +78,20 @@ class StatisticsPage(Page):
             "worst": Chart(translate("statistics", "worst score of each part")),
             "mean_dn": Chart(translate("statistics", "brightness"), translate("statistics", "grey levels")),
             "sharpness": Chart(translate("statistics", "sharpness")),
+            "saturated": Chart(translate("statistics", "saturated share")),
             "novelty": Chart(translate("statistics", "distance to the training images")),
         }
         self.cycle = Chart(translate("statistics", "inspection time"), "ms")
         grid = QGridLayout()
-        grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 4)
-        grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 4, 1, 2)
-        trends = list(self.trends.values())
-        for index, chart in enumerate((*trends[:3], trends[3], self.cycle, self.reasons)):
-            grid.addWidget(chart, 1 + index // 3, index % 3 * 2, 1, 2)
-        for column in range(6):
+        grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 2)
+        grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 2)
+        grid.addWidget(self.reasons, 0, 3)
+        t = self.trends
+        charts = (t["worst"], t["mean_dn"], t["sharpness"], self.cycle, t["saturated"], t["novelty"])
+        for index, chart in enumerate(charts):
+            row, column = divmod(index, 3)
+            grid.addWidget(chart, 1 + row, column if column < 2 else 2, 1, 1 if column < 2 else 2)
+        for column in range(4):
             grid.setColumnStretch(column, 1)
         for row in range(3):
             grid.setRowStretch(row, 1)
@@ -87,6 +99,20 @@ class StatisticsPage(Page):
         rows.addLayout(top)
         rows.addWidget(self._work)
         rows.addLayout(grid, 1)
+
+    def _on_user(self) -> None:
+        hint = "" if self._session.may(Level.OPERATOR) else translate("statistics", "log in first (page Setup)")
+        self.report.setEnabled(not hint)
+        self.report.setToolTip(hint)
+        self.zero.setEnabled(self._session.may(Level.SETTER))
+
+    def _reset(self) -> None:
+        try:
+            told = self._session.reset_counts()
+        except WeldgateError as error:
+            self._problem.setText(data(str(error)))
+            return
+        self._problem.setText("" if told else translate("statistics", "no engine is there"))
 
     def _when_seen(self) -> None:
         if self.isVisible():
@@ -100,7 +126,7 @@ class StatisticsPage(Page):
 
     def _on_done(self, summary: object) -> None:
         if not isinstance(summary, Summary):
-            self._problem.setText(str(summary))
+            self._said.setText(str(summary))
             return
         self.summary = summary
         self._problem.setText("" if summary.points else translate("statistics", "no parts yet"))
@@ -108,11 +134,13 @@ class StatisticsPage(Page):
         self.clock.show_counts(summary.segments)
         self.reasons.show_bars([(data(name), count) for name, count in summary.reasons[:5]])
         bad = [p.verdict is not Verdict.OK for p in summary.points]
-        s = self._session.settings
+        status = self._session.status
+        s = for_recipe(self._session.settings, 1 if status is None else status.recipe)
         limits: dict[str, list[float]] = {
             "worst": list(summary.thresholds),
             "mean_dn": [s.quality.min_mean_dn],
             "sharpness": [s.quality.min_sharpness],
+            "saturated": [s.quality.max_saturated_share],
             "novelty": [],
         }
         for key, chart in self.trends.items():
@@ -120,9 +148,11 @@ class StatisticsPage(Page):
         self.cycle.show_histogram([p.cycle_ms for p in summary.points])
 
     def _ask_report(self) -> None:
-        name, _ = QFileDialog.getSaveFileName(self, translate("statistics", "Report"), "report.html", "HTML (*.html)")
-        if name:
-            self.write_report(Path(name))
+        title, only = translate("statistics", "Report"), QFileDialog.Option.ReadOnly
+        name, _ = QFileDialog.getSaveFileName(self, title, "report.html", "HTML (*.html)", options=only)
+        if name and self._session.may(Level.OPERATOR):  # or their time was over meanwhile
+            path = Path(name)
+            self.write_report(path if path.suffix.lower() in (".html", ".htm") else path.with_name(path.name + ".html"))
 
     def write_report(self, target: Path) -> None:
         """The chosen parts as one HTML file."""
@@ -146,10 +176,7 @@ class StatisticsPage(Page):
 
 
 def _records(folder: Path, limit: int, told: Told) -> Iterator[Record]:
-    try:
-        rows = find(folder, Wanted(newest_first=True, limit=limit))
-    except RecordError:
-        rows = []
+    rows = find(folder, Wanted(newest_first=True, limit=limit)) if (folder / INDEX).exists() else []
     for count, row in enumerate(rows):
         if not told(count, len(rows)):
             return
