@@ -7,7 +7,7 @@ from PySide6.QtGui import QImage
 
 from station.archive.decided import segment_kinds
 from station.classify.onnx import Classifier
-from station.domain import STRIP_COLUMNS, Image
+from station.domain import STRIP_COLUMNS, Image, Inspection
 from station.errors import ImageError
 from station.imagefile import read_image
 from station.panel.live.weld_view import Drawn
@@ -30,10 +30,15 @@ def kept_frame(folder: Path, record: Record) -> Image:
 
 def of_record(folder: Path, record: Record) -> tuple[Drawn, QImage | None]:
     """Picture and strip of a record, as it was judged. Raises ImageError."""
-    preview = make_preview(record.inspection_id, kept_frame(folder, record), record.inspection.ring)
     nok = tuple(kind is not None for kind in segment_kinds(record))
-    image, inspection = QImage.fromData(preview.frame_jpeg), record.inspection
-    return Drawn(image, preview.scale, preview.origin_px, inspection.ring, nok, inspection.findings), strip_image(preview)
+    return judged(kept_frame(folder, record), record.inspection, nok)
+
+
+def judged(image: Image, inspection: Inspection, nok: tuple[bool, ...]) -> tuple[Drawn, QImage | None]:
+    """Picture and strip of an image (H, W) uint8; `nok`: refused segments. Raises LocateError if the ring is not wholly in view."""
+    preview = make_preview(0, image, inspection.ring)
+    small = QImage.fromData(preview.frame_jpeg)
+    return Drawn(small, preview.scale, preview.origin_px, inspection.ring, nok, inspection.findings), strip_image(preview)
 
 
 def defect_map(classifier: Classifier, folder: Path, record: Record) -> QImage:

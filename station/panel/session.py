@@ -35,7 +35,8 @@ AGAIN_S = 1.0
 class Change:
     """Changed settings that the engine has not yet answered for."""
 
-    undo: Callable[[], None]
+    undo: Callable[[], None] | None
+    """None: it was taken back, and that is what the engine is to take up."""
     asked_s: float
     """Epoch seconds."""
     again_s: float
@@ -135,6 +136,9 @@ class Session(QObject):
 
     def reload(self, undo: Callable[[], None]) -> bool:
         """False if no engine is there. `undo` is done if the engine refuses the settings."""
+        return self._ask_to_reload(undo)
+
+    def _ask_to_reload(self, undo: Callable[[], None] | None) -> bool:
         now_s = time.time()
         self.change = Change(undo, now_s, now_s + AGAIN_S)
         return self.ask(Reload(now_s))
@@ -145,6 +149,8 @@ class Session(QObject):
             return
         if restarted or event.reloaded_s >= change.asked_s:
             self.change = None
+            if change.undo is None:
+                return
             if Alarm.SETTINGS_REFUSED not in event.alarms:
                 self.change_used.emit()
                 return
@@ -152,7 +158,7 @@ class Session(QObject):
                 change.undo()
             except WeldgateError:
                 return  # the alarm stays, and with it the reason in the engine's log
-            self.ask(Reload(time.time()))
+            self._ask_to_reload(None)
             self.change_refused.emit()
         elif time.time() >= change.again_s and event.offline is not Offline.ATTENDED:
             change.again_s = time.time() + AGAIN_S

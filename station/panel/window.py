@@ -63,7 +63,13 @@ def _setup(session: Session) -> Page:
     return SetupPage(session)
 
 
-PAGES: tuple[Callable[[Session], Page], ...] = (LivePage, _history, _statistics, _line, _alarms, _setup)
+def _replay(session: Session) -> Page:
+    from station.panel.replay.page import ReplayPage
+
+    return ReplayPage(session)
+
+
+PAGES: tuple[Callable[[Session], Page], ...] = (LivePage, _history, _statistics, _line, _alarms, _setup, _replay)
 
 
 class Window(QMainWindow):
@@ -95,6 +101,7 @@ class Window(QMainWindow):
             translate("window", "Line"),
             translate("window", "Alarms"),
             translate("window", "Setup"),
+            translate("window", "Replay"),
         ]
         self._stack = QStackedWidget()
         nav = QFrame()
@@ -163,7 +170,7 @@ class Window(QMainWindow):
         return self._pages[self._stack.currentIndex()]
 
     def go(self, index: int) -> None:
-        """Show a page: 0 live, 1 history, 2 statistics, 3 line, 4 alarms, 5 setup."""
+        """Show a page: 0 live, 1 history, 2 statistics, 3 line, 4 alarms, 5 setup, 6 replay."""
         if index not in self._pages:
             self._pages[index] = PAGES[index](self.session)
             self._places[index].addWidget(scrolled(self._pages[index]))

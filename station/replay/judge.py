@@ -32,14 +32,17 @@ def judge_image(inspector: Inspector, source: Source, factor: float) -> Outcome:
     except ImageError as error:
         return Outcome(source.name, _error(str(error)), str(error))
     try:
-        inspection = inspector.inspect(image if factor == 1 else _scaled(image, factor))
+        inspection = inspector.inspect(at_scale(image, factor))
     except Exception as error:  # noqa: BLE001 - one image must not end the others
         why = f"{source.path}: could not be judged ({type(error).__name__}: {str(error).splitlines()[0][:100] if str(error) else ''})"
         return Outcome(source.name, _error(why), why)
     return Outcome(source.name, entry(inspection, factor), None, tuple(f"{source.path}: {w}" for w in warnings))
 
 
-def _scaled(image: Image, factor: float) -> Image:
+def at_scale(image: Image, factor: float) -> Image:
+    """`image` (H, W) uint8 made larger by `factor`."""
+    if factor == 1:
+        return image
     method = cv2.INTER_AREA if factor < 1 else cv2.INTER_LINEAR
     return np.asarray(cv2.resize(image, None, fx=factor, fy=factor, interpolation=method), np.uint8)
 

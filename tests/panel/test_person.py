@@ -19,8 +19,10 @@ from station.imagefile import read_image
 from station.panel.app import open_window
 from station.panel.history.page import HistoryPage
 from station.panel.live.page import LivePage
+from station.panel.replay.page import ReplayPage
 from station.panel.setup.page import SetupPage
 from station.panel.window import Window
+from station.plc.alarms import Alarm
 from station.plc.registers import VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.users import Level, save_user
@@ -109,8 +111,8 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     window.go(1)
     history = window.page
     assert isinstance(history, HistoryPage)
-    history.since.setCurrentText("last hour")
-    history.verdict.setCurrentText("NOK")
+    history.fields.since.setCurrentText("last hour")
+    history.fields.verdict.setCurrentText("NOK")
     assert history.film.count() == len(nok)
     history.film.setCurrentRow(0)
     number = history.film.chosen()
@@ -180,7 +182,8 @@ def test_limits_that_the_station_refuses_are_taken_back(station: tuple[Path, Lin
         ("0.01", "5", "trial of the sharpness limit"),
     ]
     assert recipe.fields["min_sharpness"].value == 0.01
-    qtbot.waitUntil(lambda: window.session.status is not None and not window.session.status.alarms, timeout=20_000)
+    session = window.session
+    qtbot.waitUntil(lambda: session.status is not None and Alarm.SETTINGS_REFUSED not in session.status.alarms, timeout=20_000)
 
 
 def test_a_record_whose_picture_is_gone_is_shown_as_such(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
@@ -250,3 +253,66 @@ def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(station: tuple[Pa
     seen = [overlay.pixelColor(x, y).alpha() for x in range(0, overlay.width(), 8) for y in range(0, overlay.height(), 4)]
     assert max(seen) > 100
     assert sum(a > 100 for a in seen) < len(seen) / 2
+
+
+def test_recorded_parts_are_judged_again_in_the_window(station: tuple[Path, Line], window: Window, qtbot: QtBot, tmp_path: Path) -> None:
+    _, line = station
+    answers = line.passes(qtbot, 4)
+    log_in(window, qtbot, "Ada", "1234")
+    window.go(6)
+    page = window.page
+    assert isinstance(page, ReplayPage)
+    qtbot.mouseClick(page.judge, LEFT)
+    qtbot.waitUntil(lambda: page.done is not None, timeout=20_000)
+    assert page.table.rowCount() == 4
+    assert page.said.text().endswith("4 compared with the line, 0 verdicts differ")
+    nok = [a for a in answers if a.verdict is VerdictCode.NOK]
+    assert sum(row[2] == "NOK" for row in page.table.texts()) == len(nok)
+    page.table.selectRow(0)
+    qtbot.waitUntil(lambda: page.weld.drawn is not None, timeout=10_000)
+    assert page.weld.drawn is not None
+    assert page.weld.drawn.ring is not None
+    page.only_flips.setChecked(True)
+    assert page.table.rowCount() == 0
+    page.write_report(tmp_path / "out")
+    qtbot.waitUntil((tmp_path / "out" / "replay.json").exists, timeout=10_000)
+    assert "4 parts compared" in (tmp_path / "out" / "report.html").read_text()
+    page.folder.setText(str(tmp_path / "nowhere"))
+    page.what.setCurrentIndex(page.what.count() - 1)
+    qtbot.waitUntil(lambda: not page._work.busy, timeout=5000)
+    page.start()
+    qtbot.waitUntil(lambda: "no such file or folder" in page._problem.text(), timeout=10_000)
+
+
+def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
+    station: tuple[Path, Line], window: Window, qtbot: QtBot, tmp_path: Path
+) -> None:
+    _, line = station
+    answers = line.passes(qtbot, 4)
+    nok = [a.inspection_id for a in answers if a.verdict is VerdictCode.NOK]
+    log_in(window, qtbot, "Ada", "1234")
+    window.go(1)
+    page = window.page
+    assert isinstance(page, HistoryPage)
+    fields = page.fields
+    fields.state.setCurrentText("to be confirmed")
+    assert sorted(page.film.rows) == nok
+    page.film.setCurrentRow(0)
+    page.say(Opinion.RIGHT)
+    fields.state.setCurrentText("reviewed once")
+    assert list(page.film.rows) == [nok[-1]]
+    qtbot.waitUntil(page.show_map.isEnabled, timeout=5000)
+    qtbot.mouseClick(page.show_map, LEFT)
+    qtbot.waitUntil(lambda: page.record.strip._map is not None, timeout=20_000)
+    fields.state.setCurrentIndex(0)
+    fields.since.setCurrentText("from … to …")
+    assert fields.begin.isVisible()
+    assert len(page.film.rows) == 4
+    page.list_to(tmp_path / "parts.csv")
+    qtbot.waitUntil((tmp_path / "parts.csv").exists, timeout=10_000)
+    qtbot.waitUntil(lambda: not page._work.busy, timeout=5000)
+    assert len((tmp_path / "parts.csv").read_text().splitlines()) == 5
+    fields.end.setDateTime(fields.begin.dateTime().addSecs(60))
+    page.search()
+    assert not page.film.rows
+    assert page.record.record is None, "the part before must not stay in sight"

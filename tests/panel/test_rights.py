@@ -167,6 +167,7 @@ def test_two_windows_do_not_wipe_each_other_out(window: Window, path: Path) -> N
     change(session, Level.QUALITY, {("recipes", "1", "quality", "min_sharpness"): (0.01, 0.02)}, REASON)
     first = session.change
     assert first is not None
+    assert first.undo is not None
     change(session, Level.QUALITY, {("recipes", "1", "model", "hole_threshold"): (0.46, 0.5)}, REASON)
     first.undo()
     assert adjustments.read(path) == {"recipes": {"1": {"model": {"hole_threshold": 0.5}}}}

@@ -149,6 +149,7 @@ def test_every_page_fits_the_screen_in_both_languages(window: Window, size: tupl
             hint = page.minimumSizeHint()
             assert hint.width() <= size[0] - NAV_PX, page
             assert hint.height() <= size[1] - HEADER_PX, page
+        window.go(5)
         setup = window.page
         assert isinstance(setup, SetupPage)
         for tab in (setup.login, setup.camera, setup.recipe, setup.masters, setup.people, setup.journal):

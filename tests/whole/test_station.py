@@ -189,7 +189,7 @@ def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(stati
     while len(station.part_events()) < 2 and time.monotonic() < until:
         time.sleep(0.05)
     event = station.part_events()[-1]
-    assert (event.record.purpose, event.record.verdict, event.shown_to_plc) == (Purpose.TEST, Verdict.OK, False)
+    assert (event.record.purpose, event.record.verdict, event.told) == (Purpose.TEST, Verdict.OK, VerdictCode.NONE)
 
     async def look() -> dict[str, object]:
         line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)

@@ -1,25 +1,26 @@
 """Past parts: the last 300 or what is searched for, one of them opened, reviewed, exported."""
 
-from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from station.archive.export import export
-from station.archive.reader import Row, Wanted, find, read_record, read_records
+from station.archive.reader import Row, Wanted, read_record, read_records
 from station.archive.review import Opinion, Review, State, give, possible, reviews
-from station.domain import SEGMENTS, Reason, Verdict
 from station.errors import ImageError, LocateError, RecordError, WeldgateError
 from station.panel.card import label
+from station.panel.history.fields import SearchFields
 from station.panel.history.filmstrip import Filmstrip
 from station.panel.history.record_view import RecordView
-from station.panel.kept import of_record
+from station.panel.kept import defect_map, of_record
 from station.panel.page import Page
 from station.panel.session import FILM, THUMB_PX, Session
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
+from station.recipe import load_inspector
+from station.settings import for_recipe
 from station.users import Level
 
 REFRESH_MS = 1000
@@ -41,12 +42,9 @@ class HistoryPage(Page):
         self._lay_out()
         self.film.currentItemChanged.connect(self._on_chosen)
         self.gallery.toggled.connect(self._on_gallery)
-        self.look_up.clicked.connect(self.search)
-        self.serial.returnPressed.connect(self.search)
-        for box in (self.since, self.verdict, self.kind, self.segment, self.score):
-            box.currentIndexChanged.connect(self.search)
+        self.fields.asked.connect(self.search)
         self._work.done.connect(self._on_pictures)
-        self._work.failed.connect(self._problem.setText)
+        self._work.failed.connect(lambda why: self._problem.setText(data(why)))
         session.user_changed.connect(self.comment.clear)
         session.user_changed.connect(self._on_user)
         self._timer = QTimer(self)
@@ -56,39 +54,11 @@ class HistoryPage(Page):
         self._on_user()
 
     def _lay_out(self) -> None:
-        self.serial = QLineEdit()
-        self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
-        self.verdict, self.kind, self.segment, self.score, self.since = (QComboBox() for _ in range(5))
-        self.verdict.addItem(translate("history", "all verdicts"), None)
-        for verdict in Verdict:
-            self.verdict.addItem(str(verdict), str(verdict))
-        self.kind.addItem(translate("history", "all reasons"), None)
-        for reason in Reason:
-            self.kind.addItem(data(reason), str(reason))
-        self.segment.addItem(translate("history", "all segments"), None)
-        segment = translate("history", "segment")
-        for index in range(1, SEGMENTS + 1):
-            self.segment.addItem(f"{segment} {index}", index)
-        self.score.addItem(translate("history", "any score"), None)
-        for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95):
-            self.score.addItem(f"≥ {score:g}", score)
-        self.since.addItem(translate("history", "any time"), None)
-        for text, hours in (
-            (translate("history", "last hour"), 1),
-            (translate("history", "last 8 hours"), 8),
-            (translate("history", "last day"), 24),
-            (translate("history", "last week"), 168),
-        ):
-            self.since.addItem(text, hours)
-        self.look_up, self.gallery = QPushButton(translate("history", "Search")), QPushButton(translate("history", "Gallery"))
+        self.fields, self.gallery = SearchFields(), QPushButton(translate("history", "Gallery"))
         self.gallery.setCheckable(True)
-        self.serial.setMinimumWidth(200)
-        for box in (self.since, self.verdict, self.kind, self.segment, self.score):
-            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-            box.setMinimumContentsLength(9 if box is self.segment else 7)
         top = QHBoxLayout()
-        for widget in (self.serial, self.since, self.verdict, self.kind, self.segment, self.score, self.look_up, self.gallery):
-            top.addWidget(widget, 1 if widget is self.serial else 0)
+        top.addWidget(self.fields, 1)
+        top.addWidget(self.gallery, 0, Qt.AlignmentFlag.AlignTop)
         self._count, self._problem, self._work = label("", "quiet"), label("", "problem", wrap=True), WorkBar()
         left = QWidget()
         column = QVBoxLayout(left)
@@ -108,6 +78,11 @@ class HistoryPage(Page):
             Opinion.FALSE_CALL: QPushButton(translate("history", "False call")),
             Opinion.MISSED: QPushButton(translate("history", "Missed defect")),
         }
+        self.show_map = QPushButton(translate("history", "Defect map"))
+        self.show_map.clicked.connect(self._ask_map)
+        self.list = QPushButton(translate("history", "Table…"))
+        self.list.setToolTip(translate("history", "the parts that were found, as CSV"))
+        self.list.clicked.connect(self._ask_list)
         self.export = QPushButton(translate("history", "Export reviewed…"))
         bottom = QHBoxLayout()
         bottom.addWidget(self.comment, 1)
@@ -115,7 +90,8 @@ class HistoryPage(Page):
             button.clicked.connect(lambda _=False, o=opinion: self.say(o))
             bottom.addWidget(button)
         self.export.clicked.connect(self._ask_export)
-        bottom.addWidget(self.export)
+        for button in (self.show_map, self.list, self.export):
+            bottom.addWidget(button)
         rows = QVBoxLayout(self)
         rows.addLayout(top)
         rows.addWidget(split, 1)
@@ -124,25 +100,10 @@ class HistoryPage(Page):
         rows.addWidget(self._work)
         rows.addWidget(self._problem)
 
-    def wanted(self) -> Wanted:
-        """What the fields say."""
-        segment, score, hours = self.segment.currentData(), self.score.currentData(), self.since.currentData()
-        return Wanted(
-            serial=self.serial.text().strip() or None,
-            since=None if hours is None else datetime.now(UTC) - timedelta(hours=hours),
-            verdict=self.verdict.currentData(),
-            reason=self.kind.currentData(),
-            segment=segment,
-            min_score=0.05 if segment is not None and score is None else score,
-            newest_first=True,
-            limit=FILM,
-        )
-
     def search(self) -> None:
         """Read the index."""
         try:
-            rows = find(self._session.folder, self.wanted())
-            known = reviews(self._session.folder)
+            rows, known = self.fields.search(self._session.folder)
         except RecordError as error:
             rows, known = [], {}
             self._problem.setText(str(error))
@@ -182,7 +143,9 @@ class HistoryPage(Page):
         row = None if number is None else self.film.rows.get(number)
         for opinion, button in self.opinions.items():
             button.setEnabled(user is not None and row is not None and opinion in possible(row.verdict))
-        self.export.setEnabled(user is not None)
+        for button in (self.export, self.list):
+            button.setEnabled(user is not None)
+        self.show_map.setEnabled(row is not None and self.record.strip_shown)
         if row is None:
             self._review.setText("")
             return
@@ -226,7 +189,11 @@ class HistoryPage(Page):
             self._work.start(translate("history", "pictures"), lambda told: _thumbs(folder, missing, told))
 
     def _on_pictures(self, found: object) -> None:
-        if isinstance(found, dict):
+        if isinstance(found, tuple):
+            number, overlay = found
+            if self.record.record is not None and self.record.record.inspection_id == number:  # or another one was chosen meanwhile
+                self.record.strip.show_map(overlay)
+        elif isinstance(found, dict):
             self._pictures |= found
             self.film.fill(list(self.film.rows.values()), {**self._pictures, **self._session.thumbs}, self._reviews())
         else:
@@ -237,6 +204,40 @@ class HistoryPage(Page):
         name = QFileDialog.getExistingDirectory(self, title, options=QFileDialog.Option.ReadOnly)
         if name and self._session.may(Level.OPERATOR):  # or their time was over meanwhile
             self.export_to(Path(name) / "reviewed")
+
+    def _ask_list(self) -> None:
+        title, only = translate("history", "the parts that were found, as CSV"), QFileDialog.Option.ReadOnly
+        name, _ = QFileDialog.getSaveFileName(self, title, "parts.csv", "CSV (*.csv)", options=only)
+        if name and self._session.may(Level.OPERATOR):
+            path = Path(name)
+            self.list_to(path if path.suffix.lower() == ".csv" else path.with_name(path.name + ".csv"))
+
+    def list_to(self, target: Path) -> None:
+        """The parts in the list, one row each."""
+        folder, numbers = self._session.folder, list(self.film.rows)
+
+        def work(told: Told) -> str:
+            entries = []
+            for count, number in enumerate(numbers):
+                entries += list(read_records(folder, Wanted(number=number)))
+                if not told(count, len(numbers)):
+                    return ""
+            target.unlink(missing_ok=True)  # the dialog has asked
+            problems = list(export(entries, folder, target, "csv"))
+            return f"{target}: {len(entries) - len(problems)}"
+
+        self._work.start(translate("history", "table"), work)
+
+    def _ask_map(self) -> None:
+        record, folder, settings = self.record.record, self._session.folder, self._session.settings
+        if record is None:
+            return
+
+        def work(_told: Told) -> tuple[int, QImage]:
+            inspector, _ = load_inspector(for_recipe(settings, record.provenance.recipe))
+            return record.inspection_id, defect_map(inspector.classifier, folder, record)
+
+        self._work.start(translate("history", "defect map"), work)
 
     def export_to(self, target: Path) -> None:
         """Crops of the parts that two people agree on."""

@@ -24,6 +24,8 @@ class RecordView(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.record: Record | None = None
+        self.strip_shown = False
+        """Whether its picture is there."""
         self.weld, self.strip = WeldView(), StripView(110)
         self.findings = Table(
             (
@@ -71,7 +73,7 @@ class RecordView(QWidget):
 
     def show_nothing(self, why: str = "") -> None:
         """No record, or one that cannot be read."""
-        self.record = None
+        self.record, self.strip_shown = None, False
         self.problem.setText(why)
         self.weld.show_weld(None, translate("history", "the record cannot be read") if why else translate("history", "no part"))
         self.strip.show_strip(None, (), ())
@@ -95,6 +97,7 @@ class RecordView(QWidget):
             strip = None
             self.weld.show_weld(None, data(str(error)) if len(str(error)) < 60 else translate("history", "its picture cannot be read"))
         self.strip.show_strip(strip, nok_scores(record), nok)
+        self.strip_shown = strip is not None
         self.findings.fill(
             [
                 (

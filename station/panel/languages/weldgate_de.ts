@@ -700,6 +700,10 @@
         <translation>Seriennummer, oder ihr Anfang mit *</translation>
     </message>
     <message>
+        <source>from … to …</source>
+        <translation>von … bis …</translation>
+    </message>
+    <message>
         <source>all verdicts</source>
         <translation>alle Urteile</translation>
     </message>
@@ -724,6 +728,14 @@
         <translation>jede Zeit</translation>
     </message>
     <message>
+        <source>from</source>
+        <translation>von</translation>
+    </message>
+    <message>
+        <source>to</source>
+        <translation>bis</translation>
+    </message>
+    <message>
         <source>last hour</source>
         <translation>letzte Stunde</translation>
     </message>
@@ -738,6 +750,14 @@
     <message>
         <source>last week</source>
         <translation>letzte Woche</translation>
+    </message>
+    <message>
+        <source>all reviews</source>
+        <translation>alle Nachprüfungen</translation>
+    </message>
+    <message>
+        <source>to be confirmed</source>
+        <translation>zu bestätigen</translation>
     </message>
     <message>
         <source>Search</source>
@@ -764,6 +784,18 @@
         <translation>Übersehen</translation>
     </message>
     <message>
+        <source>Defect map</source>
+        <translation>Fehlerkarte</translation>
+    </message>
+    <message>
+        <source>Table…</source>
+        <translation>Tabelle…</translation>
+    </message>
+    <message>
+        <source>the parts that were found, as CSV</source>
+        <translation>die gefundenen Teile als CSV</translation>
+    </message>
+    <message>
         <source>Export reviewed…</source>
         <translation>Nachgeprüfte ausgeben…</translation>
     </message>
@@ -786,6 +818,14 @@
     <message>
         <source>Folder for the crops of reviewed parts</source>
         <translation>Ordner für die Ausschnitte nachgeprüfter Teile</translation>
+    </message>
+    <message>
+        <source>table</source>
+        <translation>Tabelle</translation>
+    </message>
+    <message>
+        <source>defect map</source>
+        <translation>Fehlerkarte</translation>
     </message>
     <message>
         <source>left out</source>
@@ -1416,6 +1456,109 @@ Jede Stufe darf, was die davor dürfen.</translation>
     </message>
 </context>
 <context>
+    <name>replay</name>
+    <message>
+        <source>the newest of this station:</source>
+        <translation>die neuesten dieser Station:</translation>
+    </message>
+    <message>
+        <source>a folder or another archive:</source>
+        <translation>ein Ordner oder ein anderes Archiv:</translation>
+    </message>
+    <message>
+        <source>Choose…</source>
+        <translation>Wählen…</translation>
+    </message>
+    <message>
+        <source>folder with images</source>
+        <translation>Ordner mit Bildern</translation>
+    </message>
+    <message>
+        <source>recipe</source>
+        <translation>Rezept</translation>
+    </message>
+    <message>
+        <source>Judge</source>
+        <translation>Prüfen</translation>
+    </message>
+    <message>
+        <source>Report…</source>
+        <translation>Bericht…</translation>
+    </message>
+    <message>
+        <source>Other verdicts only</source>
+        <translation>Nur andere Urteile</translation>
+    </message>
+    <message>
+        <source>scale of the images</source>
+        <translation>Maßstab der Bilder</translation>
+    </message>
+    <message>
+        <source>image</source>
+        <translation>Bild</translation>
+    </message>
+    <message>
+        <source>on the line</source>
+        <translation>an der Linie</translation>
+    </message>
+    <message>
+        <source>now</source>
+        <translation>jetzt</translation>
+    </message>
+    <message>
+        <source>worst score</source>
+        <translation>schlechtester Wert</translation>
+    </message>
+    <message>
+        <source>reason</source>
+        <translation>Grund</translation>
+    </message>
+    <message>
+        <source>images</source>
+        <translation>Bilder</translation>
+    </message>
+    <message>
+        <source>log in first (page Setup)</source>
+        <translation>erst anmelden (Seite Einrichten)</translation>
+    </message>
+    <message>
+        <source>the scale is not allowed</source>
+        <translation>der Maßstab ist nicht erlaubt</translation>
+    </message>
+    <message>
+        <source>choose a folder first</source>
+        <translation>erst einen Ordner wählen</translation>
+    </message>
+    <message>
+        <source>images are judged</source>
+        <translation>Bilder werden geprüft</translation>
+    </message>
+    <message>
+        <source>{n} images: {ok} OK, {nok} NOK, {error} not judged</source>
+        <translation>{n} Bilder: {ok} OK, {nok} NOK, {error} nicht beurteilt</translation>
+    </message>
+    <message>
+        <source>{n} compared with the line, {flips} verdicts differ</source>
+        <translation>{n} mit der Linie verglichen, {flips} Urteile anders</translation>
+    </message>
+    <message>
+        <source>the same networks and limits judge it otherwise than on the line</source>
+        <translation>dieselben Netze und Grenzen urteilen anders als an der Linie</translation>
+    </message>
+    <message>
+        <source>and {n} more</source>
+        <translation>und {n} weitere</translation>
+    </message>
+    <message>
+        <source>folder for the report</source>
+        <translation>Ordner für den Bericht</translation>
+    </message>
+    <message>
+        <source>report</source>
+        <translation>Bericht</translation>
+    </message>
+</context>
+<context>
     <name>setup</name>
     <message>
         <source>Login</source>
@@ -1522,7 +1665,7 @@ Jede Stufe darf, was die davor dürfen.</translation>
     </message>
     <message>
         <source>log in first (page Setup)</source>
-        <translation type="unfinished">erst anmelden (Seite Einrichten)</translation>
+        <translation>erst anmelden (Seite Einrichten)</translation>
     </message>
     <message>
         <source>no engine is there</source>
@@ -1570,6 +1713,10 @@ Jede Stufe darf, was die davor dürfen.</translation>
     <message>
         <source>Setup</source>
         <translation>Einrichten</translation>
+    </message>
+    <message>
+        <source>Replay</source>
+        <translation>Wiedergabe</translation>
     </message>
     <message>
         <source>dark or light</source>

@@ -1,0 +1,126 @@
+"""What is looked for among the past parts."""
+
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from PySide6.QtCore import QDateTime, Signal
+from PySide6.QtWidgets import QComboBox, QDateTimeEdit, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+
+from station.archive.reader import Row, Wanted, find
+from station.archive.review import Review, State, reviews
+from station.domain import SEGMENTS, Purpose, Reason, Verdict
+from station.panel.card import label
+from station.panel.session import FILM
+from station.panel.words import data, translate
+
+SEARCHED = 5000
+"""The newest parts, when the state of their reviews is asked for."""
+BETWEEN, TO_CONFIRM = -1, "to be confirmed"
+
+
+class SearchFields(QWidget):
+    """Serial, time, verdict, reason, segment, score, state of the reviews."""
+
+    asked = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.serial = QLineEdit()
+        self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
+        self.serial.setMinimumWidth(120)
+        self.since, self.verdict, self.kind, self.segment, self.score, self.state = (QComboBox() for _ in range(6))
+        self._fill()
+        self.look_up = QPushButton(translate("history", "Search"))
+        now = QDateTime.currentDateTime()
+        self.begin, self.end = QDateTimeEdit(now.addDays(-1)), QDateTimeEdit(now.addSecs(60))
+        self._between = QWidget()
+        row = QHBoxLayout(self._between)
+        row.setContentsMargins(0, 0, 0, 0)
+        for text, edit in ((translate("history", "from"), self.begin), (translate("history", "to"), self.end)):
+            edit.setDisplayFormat("dd.MM.yyyy HH:mm")
+            edit.setCalendarPopup(True)
+            edit.editingFinished.connect(self.asked)
+            row.addWidget(label(text, "quiet"))
+            row.addWidget(edit)
+        row.addStretch(1)
+        self._between.hide()
+        top = QHBoxLayout()
+        top.addWidget(self.serial, 1)
+        for box in (self.since, self.verdict, self.kind, self.segment, self.score, self.state):
+            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+            box.setMinimumContentsLength(8 if box is self.segment else 6)
+            box.currentIndexChanged.connect(self._on_chosen)
+            top.addWidget(box)
+        top.addWidget(self.look_up)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.addLayout(top)
+        rows.addWidget(self._between)
+        self.look_up.clicked.connect(self.asked)
+        self.serial.returnPressed.connect(self.asked)
+
+    def _fill(self) -> None:
+        segment = translate("history", "segment")
+        times = (
+            (translate("history", "any time"), None),
+            (translate("history", "last hour"), 1),
+            (translate("history", "last 8 hours"), 8),
+            (translate("history", "last day"), 24),
+            (translate("history", "last week"), 168),
+            (translate("history", "from … to …"), BETWEEN),
+        )
+        for text, hours in times:
+            self.since.addItem(text, hours)
+        choices: tuple[tuple[QComboBox, str, list[tuple[str, object]]], ...] = (
+            (self.verdict, translate("history", "all verdicts"), [(data(verdict), str(verdict)) for verdict in Verdict]),
+            (self.kind, translate("history", "all reasons"), [(data(reason), str(reason)) for reason in Reason]),
+            (self.segment, translate("history", "all segments"), [(f"{segment} {n}", n) for n in range(1, SEGMENTS + 1)]),
+            (self.score, translate("history", "any score"), [(f"≥ {score:g}", score) for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)]),
+            (
+                self.state,
+                translate("history", "all reviews"),
+                [(translate("history", "to be confirmed"), TO_CONFIRM), *((data(state), str(state)) for state in State)],
+            ),
+        )
+        for box, every, values in choices:
+            box.addItem(every, None)
+            for text, value in values:
+                box.addItem(text, value)
+
+    def _on_chosen(self) -> None:
+        self._between.setVisible(self.since.currentData() == BETWEEN)
+        self.asked.emit()
+
+    def wanted(self) -> Wanted:
+        """What the fields say, but for the state of the reviews."""
+        segment, score, hours = self.segment.currentData(), self.score.currentData(), self.since.currentData()
+        between = hours == BETWEEN
+        return Wanted(
+            serial=self.serial.text().strip() or None,
+            since=None if hours is None else _utc(self.begin) if between else datetime.now(UTC) - timedelta(hours=hours),
+            until=_utc(self.end) if between else None,
+            verdict=self.verdict.currentData(),
+            reason=self.kind.currentData(),
+            segment=segment,
+            min_score=0.05 if segment is not None and score is None else score,
+            newest_first=True,
+            limit=FILM if self.state.currentData() is None else SEARCHED,
+        )
+
+    def search(self, folder: Path) -> tuple[list[Row], dict[int, Review]]:
+        """The newest 300 of the parts looked for, and all reviews. Raises RecordError."""
+        known, state = reviews(folder), self.state.currentData()
+        rows = find(folder, self.wanted())
+        return [row for row in rows if _fits(row, known.get(row.inspection_id), state)][:FILM], known
+
+
+def _utc(edit: QDateTimeEdit) -> datetime:
+    return datetime.fromtimestamp(edit.dateTime().toSecsSinceEpoch(), UTC)
+
+
+def _fits(row: Row, review: Review | None, state: str | None) -> bool:
+    """Whether a part is in this state of review; to be confirmed is a refused part that two people do not agree on yet."""
+    now = State.NONE if review is None else review.state
+    if state == TO_CONFIRM:
+        return row.verdict == Verdict.NOK and row.purpose == Purpose.PART and now is not State.AGREED
+    return state is None or now == state
