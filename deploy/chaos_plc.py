@@ -34,6 +34,8 @@ KNOB_SHARE = 0.012
 """Share of the parts in which each knob is turned."""
 LATE_SHARE, ERROR_SHARE, OK_SHARE = 0.005, 0.02, 0.6
 DEADLINE_MS = 300
+SLACK = 1.0
+"""All time-outs are so many times as long: on a machine that is busy otherwise a thread may wait for some 100 ms to run."""
 SETTLED = 1
 """Parts after a disturbed one that are not yet counted as undisturbed."""
 
@@ -75,7 +77,7 @@ class Truths:
         late = self._rng.random() < LATE_SHARE
         if late:
             self.late.add(trigger.serial)
-        time.sleep(DEADLINE_MS / 1000 * 1.3 if late else self._rng.uniform(0.0, 0.01))
+        time.sleep(DEADLINE_MS * SLACK / 1000 * 1.3 if late else self._rng.uniform(0.0, 0.01))
         roll = self._rng.random()
         verdict = VerdictCode.ERROR if roll < ERROR_SHARE else VerdictCode.OK if roll < OK_SHARE else VerdictCode.NOK
         number = len(self.made) + 1
@@ -90,13 +92,13 @@ def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
     settings = PlcSettings(
         mode="server" if mode == "server" else "client",
         port=free_ports(1)[0],
-        deadline_ms=DEADLINE_MS,
-        result_ttl_ms=1500,
-        stuck_ms=300,
-        plc_heartbeat_ms=500,
+        deadline_ms=round(DEADLINE_MS * SLACK),
+        result_ttl_ms=round(1500 * SLACK),
+        stuck_ms=round(300 * SLACK),
+        plc_heartbeat_ms=round(500 * SLACK),
         poll_ms=5,
-        timeout_ms=400,
-        writer_idle_ms=200,
+        timeout_ms=round(400 * SLACK),
+        writer_idle_ms=round(200 * SLACK),
     )
     line = make_line(settings)
     if mode == "server":
@@ -120,7 +122,7 @@ async def _drive(plc: SimulatedLine, truths: Truths, mode: str, parts: int, seed
         for number in track(range(parts), description=mode, transient=True, disable=not progress):
             knobs = frozenset(knob for knob in Knob if rng.random() < KNOB_SHARE)
             serial = f"P{number:07d}"
-            answer = await plc.inspect(serial, WINDOW_S, knobs=knobs)
+            answer = await plc.inspect(serial, WINDOW_S * SLACK, knobs=knobs)
             calm = 0 if knobs or serial in truths.late else calm + 1
             _note(report, answer, serial, knobs, truths, calm > SETTLED)
     finally:
