@@ -17,6 +17,7 @@ from threading import Thread
 import cv2
 import numpy as np
 from PySide6.QtCore import QEventLoop, QTimer
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
 from deploy.demo import free_ports, running, shipped_parts, station_toml
@@ -31,6 +32,7 @@ from synth.feed import Feed
 PARTS = 12
 VIEWS: tuple[tuple[str, int, int], ...] = (
     ("live", 0, 0),
+    ("live-segment", 0, 0),
     ("history", 1, 0),
     ("statistics", 2, 0),
     ("line", 3, 0),
@@ -41,6 +43,7 @@ VIEWS: tuple[tuple[str, int, int], ...] = (
     ("setup-masters", 5, 3),
     ("setup-users", 5, 4),
     ("setup-journal", 5, 5),
+    ("replay", 6, 0),
 )
 
 
@@ -136,7 +139,14 @@ def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:
     if page == 5:
         shown.tabs.setCurrentIndex(tab)  # type: ignore[attr-defined]
     if view == "history":
-        shown.verdict.setCurrentIndex(2)  # type: ignore[attr-defined]
+        shown.fields.verdict.setCurrentIndex(2)  # type: ignore[attr-defined]
+    if view == "live-segment":
+        shown.strip.touched.emit(18)  # type: ignore[attr-defined]
+    if view == "replay":
+        shown.judge.click()  # type: ignore[attr-defined]
+        _wait(lambda: shown.done is not None)  # type: ignore[attr-defined]
+        shown.table.selectRow(shown.table.rowCount() - 1)  # type: ignore[attr-defined]
+        _wait(lambda: shown.weld.drawn is not None)  # type: ignore[attr-defined]
     if view == "statistics":
         _wait(lambda: shown.summary is not None)  # type: ignore[attr-defined]
     if view == "setup-camera":
@@ -155,8 +165,8 @@ def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:
 
 
 def _save(window: Window, path: Path) -> None:
-    picture = window.grab().toImage()
-    pixels = np.frombuffer(picture.convertToFormat(picture.Format.Format_RGB888).constBits(), np.uint8)
+    picture = window.grab().toImage().convertToFormat(QImage.Format.Format_RGB888)  # must outlive its pixels
+    pixels = np.frombuffer(picture.constBits(), np.uint8)
     rows = pixels.reshape(picture.height(), -1)[:, : picture.width() * 3].reshape(picture.height(), picture.width(), 3)
     cv2.imwrite(str(path), np.ascontiguousarray(rows[:, :, ::-1]), [cv2.IMWRITE_PNG_COMPRESSION, 9])
 

@@ -21,7 +21,7 @@ from station.panel.history.page import HistoryPage
 from station.panel.live.page import LivePage
 from station.panel.replay.page import ReplayPage
 from station.panel.setup.page import SetupPage
-from station.panel.window import Window
+from station.panel.window import HEADER_PX, NAV_PX, Window
 from station.plc.alarms import Alarm
 from station.plc.registers import VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
@@ -316,3 +316,13 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
     page.search()
     assert not page.film.rows
     assert page.record.record is None, "the part before must not stay in sight"
+    window.resize(1280, 800)
+    for language in ("en", "de"):  # with a record in it
+        window.speak(language)
+        opened = window.page
+        assert isinstance(opened, HistoryPage)
+        opened.film.setCurrentRow(0)
+        qtbot.wait(100)
+        assert opened.record.record is not None
+        assert opened.minimumSizeHint().width() <= 1280 - NAV_PX
+        assert opened.minimumSizeHint().height() <= 800 - HEADER_PX

@@ -16,8 +16,8 @@ from station.archive.journal import Kind, entries
 from station.archive.reader import find
 from station.archive.writer import Archive
 from station.camera.pylon import PylonCamera
-from station.domain import Frame, Image
-from station.events import Event, LookEvent, StatusEvent
+from station.domain import Frame, Image, Verdict
+from station.events import Event, LookEvent, PartEvent, StatusEvent
 from station.listener import Listener
 from station.plc.alarms import Alarm
 from station.plc.line import make_line
@@ -25,7 +25,7 @@ from station.plc.modbus import ModbusClient
 from station.plc.registers import Control, Flags, Offline, Status, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.recipe import prepare
-from station.requests import Reload, Request, Service, TestPicture
+from station.requests import Reload, Request, ResetCounts, Service, TestPicture
 from station.settings_file import load
 from station.startup import make_cycle
 from synth.feed import Feed
@@ -286,3 +286,38 @@ def test_a_camera_that_cannot_be_used_so_is_refused_and_the_one_before_goes_on(
     answer = running.part("AS BEFORE", good)
     assert answer.verdict is VerdictCode.OK
     assert Flags.SIMULATED in answer.flags
+
+
+def test_a_recipe_that_is_not_in_use_must_be_fit_too(running: Running) -> None:
+    enable(running)
+    asked = time.time()
+    adjustments.write(running.path, {"recipes": {"2": {"model": {"path": "nowhere.onnx"}}}})
+    running.ask(Reload(asked))
+    status = running.until(lambda e: e.reloaded_s == asked)
+    assert Alarm.SETTINGS_REFUSED in status.alarms
+    assert status.recipe == 1
+
+
+def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
+    running: Running, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def last() -> PartEvent:
+        return next(e for e in reversed(running.events) if isinstance(e, PartEvent))
+
+    good, bad = frames[label_with("OK")["frame"]], frames[label_with("hole")["frame"]]
+    assert running.part("GOOD", good).verdict is VerdictCode.OK
+    status = running.until(lambda e: e.counts.ok == 1)
+    assert status.started_s < last().at_s <= time.monotonic()
+    assert last().told is VerdictCode.OK
+    assert running.part("MASTER-OK", bad, golden=True).verdict is VerdictCode.TEST
+    assert running.part("NOT TRUSTED", good).verdict is VerdictCode.TEST
+    assert (last().told, last().record.verdict) == (VerdictCode.TEST, Verdict.OK)
+    running.ask(ResetCounts(time.time(), "Ada"))
+    running.until(lambda e: e.counts.total == 0)
+
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("station.cycle.answer", broken)
+    assert not running.part("FAULT", good).accepted
+    assert (last().told, last().record.serial, last().record.verdict) == (VerdictCode.ERROR, "FAULT", Verdict.ERROR)

@@ -48,7 +48,7 @@ class SearchFields(QWidget):
         top.addWidget(self.serial, 1)
         for box in (self.since, self.verdict, self.kind, self.segment, self.score, self.state):
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-            box.setMinimumContentsLength(8 if box is self.segment else 6)
+            box.setMinimumContentsLength(7 if box is self.state else 6)
             box.currentIndexChanged.connect(self._on_chosen)
             top.addWidget(box)
         top.addWidget(self.look_up)
@@ -72,13 +72,13 @@ class SearchFields(QWidget):
         for text, hours in times:
             self.since.addItem(text, hours)
         choices: tuple[tuple[QComboBox, str, list[tuple[str, object]]], ...] = (
-            (self.verdict, translate("history", "all verdicts"), [(data(verdict), str(verdict)) for verdict in Verdict]),
-            (self.kind, translate("history", "all reasons"), [(data(reason), str(reason)) for reason in Reason]),
-            (self.segment, translate("history", "all segments"), [(f"{segment} {n}", n) for n in range(1, SEGMENTS + 1)]),
-            (self.score, translate("history", "any score"), [(f"≥ {score:g}", score) for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)]),
+            (self.verdict, translate("history", "verdict"), [(data(verdict), str(verdict)) for verdict in Verdict]),
+            (self.kind, translate("history", "reason"), [(data(reason), str(reason)) for reason in Reason]),
+            (self.segment, translate("history", "segment"), [(f"{segment} {n}", n) for n in range(1, SEGMENTS + 1)]),
+            (self.score, translate("history", "score"), [(f"≥ {score:g}", score) for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)]),
             (
                 self.state,
-                translate("history", "all reviews"),
+                translate("history", "review"),
                 [(translate("history", "to be confirmed"), TO_CONFIRM), *((data(state), str(state)) for state in State)],
             ),
         )

@@ -26,7 +26,8 @@ class RecordView(QWidget):
         self.record: Record | None = None
         self.strip_shown = False
         """Whether its picture is there."""
-        self.weld, self.strip = WeldView(), StripView(110)
+        self.weld, self.strip = WeldView(), StripView(96)
+        self.weld.setMinimumSize(260, 250)
         self.findings = Table(
             (
                 translate("history", "finding"),
@@ -40,6 +41,7 @@ class RecordView(QWidget):
             stretch=0,
         )
         self.findings.setMaximumHeight(150)
+        self.findings.setMinimumHeight(76)
         self.facts = Facts(
             {
                 "verdict": translate("history", "verdict"),
@@ -50,7 +52,7 @@ class RecordView(QWidget):
                 "quality": translate("history", "brightness · sharpness · saturated"),
                 "ring": translate("history", "ring x · y · r · residual px"),
                 "novelty": translate("history", "distance to the training images"),
-                "steps": translate("history", "grab · find · unwrap · judge ms"),
+                "steps": translate("history", "steps ms"),
                 "limits": translate("history", "limits"),
                 "model": translate("history", "model · recipe"),
                 "hash": translate("history", "model's hash · configuration"),

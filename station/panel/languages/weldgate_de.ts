@@ -704,24 +704,8 @@
         <translation>von … bis …</translation>
     </message>
     <message>
-        <source>all verdicts</source>
-        <translation>alle Urteile</translation>
-    </message>
-    <message>
-        <source>all reasons</source>
-        <translation>alle Gründe</translation>
-    </message>
-    <message>
-        <source>all segments</source>
-        <translation>alle Segmente</translation>
-    </message>
-    <message>
         <source>segment</source>
         <translation>Segment</translation>
-    </message>
-    <message>
-        <source>any score</source>
-        <translation>jeder Wert</translation>
     </message>
     <message>
         <source>any time</source>
@@ -752,8 +736,12 @@
         <translation>letzte Woche</translation>
     </message>
     <message>
-        <source>all reviews</source>
-        <translation>alle Nachprüfungen</translation>
+        <source>reason</source>
+        <translation>Grund</translation>
+    </message>
+    <message>
+        <source>review</source>
+        <translation>Nachprüfung</translation>
     </message>
     <message>
         <source>to be confirmed</source>
@@ -896,8 +884,8 @@
         <translation type="unfinished">Abstand zu den Trainingsbildern</translation>
     </message>
     <message>
-        <source>grab · find · unwrap · judge ms</source>
-        <translation>Bild · Ring · Abwicklung · Urteil ms</translation>
+        <source>steps ms</source>
+        <translation>Zeiten ms</translation>
     </message>
     <message>
         <source>limits</source>
@@ -1150,7 +1138,7 @@
     </message>
     <message>
         <source>segment</source>
-        <translation type="unfinished">Segment</translation>
+        <translation>Segment</translation>
     </message>
     <message>
         <source>no picture yet</source>
@@ -1506,8 +1494,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>jetzt</translation>
     </message>
     <message>
-        <source>worst score</source>
-        <translation>schlechtester Wert</translation>
+        <source>score</source>
+        <translation>Wert</translation>
     </message>
     <message>
         <source>reason</source>

@@ -92,7 +92,7 @@ class ReplayPage(Page):
             translate("replay", "image"),
             translate("replay", "on the line"),
             translate("replay", "now"),
-            translate("replay", "worst score"),
+            translate("replay", "score"),
             translate("replay", "reason"),
         )
         self.table, self.weld, self._looking = Table(heads, stretch=0), WeldView(), WorkBar()
@@ -107,7 +107,7 @@ class ReplayPage(Page):
         split = QSplitter()
         split.addWidget(titled(translate("replay", "images"), self.table))
         split.addWidget(right)
-        split.setSizes([560, 520])
+        split.setSizes([640, 440])
         rows = QVBoxLayout(self)
         for line in (top, second):
             rows.addLayout(line)

@@ -83,15 +83,14 @@ class StatisticsPage(Page):
         }
         self.cycle = Chart(translate("statistics", "inspection time"), "ms")
         grid = QGridLayout()
-        grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 2)
-        grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 2)
-        grid.addWidget(self.reasons, 0, 3)
+        grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 6)
+        grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 6, 1, 3)
+        grid.addWidget(self.reasons, 0, 9, 1, 3)
         t = self.trends
-        charts = (t["worst"], t["mean_dn"], t["sharpness"], self.cycle, t["saturated"], t["novelty"])
-        for index, chart in enumerate(charts):
+        for index, chart in enumerate((t["worst"], t["mean_dn"], t["sharpness"], self.cycle, t["saturated"], t["novelty"])):
             row, column = divmod(index, 3)
-            grid.addWidget(chart, 1 + row, column if column < 2 else 2, 1, 1 if column < 2 else 2)
-        for column in range(4):
+            grid.addWidget(chart, 1 + row, 4 * column, 1, 4)
+        for column in range(12):
             grid.setColumnStretch(column, 1)
         for row in range(3):
             grid.setRowStretch(row, 1)
