@@ -5,16 +5,23 @@ from collections.abc import Sequence
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QAbstractItemView,
+    QAbstractScrollArea,
+    QComboBox,
     QFrame,
     QGridLayout,
     QHeaderView,
     QLabel,
+    QListView,
     QScrollArea,
+    QScroller,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
     QWidget,
 )
+
+TOUCH_PX = 44
+"""Least height of what is touched."""
 
 
 def label(text: str, name: str = "", wrap: bool = False) -> QLabel:
@@ -67,7 +74,21 @@ def scrolled(page: QWidget) -> QScrollArea:
     area = QScrollArea()
     area.setWidgetResizable(True)
     area.setWidget(page)
+    by_finger(area)
     return area
+
+
+def by_finger(area: QAbstractScrollArea) -> None:
+    """A finger moves what is in it."""
+    QScroller.grabGesture(area.viewport(), QScroller.ScrollerGestureType.TouchGesture)
+
+
+class Choice(QComboBox):
+    """A combo box whose entries can be hit with gloves."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setView(QListView())  # the style sheet sets the height of its rows
 
 
 class Table(QTableWidget):
@@ -84,7 +105,8 @@ class Table(QTableWidget):
         self.setAlternatingRowColors(True)
         self.setShowGrid(False)
         self.setWordWrap(False)
-        self.verticalHeader().setDefaultSectionSize(38)
+        self.verticalHeader().setDefaultSectionSize(TOUCH_PX)
+        by_finger(self)
         header = self.horizontalHeader()
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)

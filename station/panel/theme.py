@@ -112,13 +112,16 @@ QPushButton:disabled {{ color: {c.quiet}; background: {c.background}; }}
 QPushButton#nav {{ border: none; border-radius: 0; text-align: left; padding: 10px 14px; font-size: 16px; min-height: 40px; }}
 QPushButton#nav:checked {{ background: {c.background}; border-left: 5px solid {c.accent}; font-weight: 700; }}
 QPushButton#flat {{ border: none; background: transparent; padding: 6px 10px; }}
-QLineEdit, QComboBox {{
-    background: {c.surface}; border: 1px solid {c.line}; border-radius: 4px; padding: 6px; min-height: 28px; }}
-QLineEdit:focus, QComboBox:focus {{ border: 2px solid {c.accent}; }}
+QPushButton#nav:focus, QPushButton#flat:focus {{ border: 2px solid {c.accent}; }}
+QPushButton#key {{ font-size: 18px; padding: 4px; min-width: 20px; min-height: 36px; }}
+QLineEdit, QComboBox, QDateTimeEdit {{
+    background: {c.surface}; border: 1px solid {c.line}; border-radius: 4px; padding: 6px; min-height: 30px; }}
+QLineEdit:focus, QComboBox:focus, QDateTimeEdit:focus {{ border: 2px solid {c.accent}; }}
 QLineEdit:disabled, QComboBox:disabled {{ color: {c.quiet}; background: {c.background}; }}
 QComboBox::drop-down {{ border: none; width: 24px; }}
 QComboBox::down-arrow {{ width: 0; height: 0; border-left: 5px solid {c.surface}; border-right: 5px solid {c.surface};
     border-top: 7px solid {c.quiet}; margin-right: 8px; }}
+QComboBox QAbstractItemView::item {{ min-height: 44px; }}
 QComboBox QAbstractItemView {{ background: {c.surface}; selection-background-color: {c.raised}; selection-color: {c.text}; }}
 QTableView, QListView {{ background: {c.surface}; alternate-background-color: {c.background}; border: 1px solid {c.line};
     gridline-color: {c.line}; selection-background-color: {c.raised}; selection-color: {c.text}; }}
@@ -130,9 +133,9 @@ QProgressBar {{ background: {c.surface}; border: 1px solid {c.line}; border-radi
 QProgressBar::chunk {{ background: {c.accent}; }}
 QScrollArea {{ border: none; }}
 QWidget#plain {{ background: transparent; }}
-QScrollBar:vertical {{ background: {c.background}; width: 16px; margin: 0; }}
-QScrollBar:horizontal {{ background: {c.background}; height: 16px; margin: 0; }}
-QScrollBar::handle {{ background: {c.line}; border-radius: 6px; margin: 2px; min-height: 36px; min-width: 36px; }}
+QScrollBar:vertical {{ background: {c.background}; width: 22px; margin: 0; }}
+QScrollBar:horizontal {{ background: {c.background}; height: 22px; margin: 0; }}
+QScrollBar::handle {{ background: {c.line}; border-radius: 6px; margin: 2px; min-height: 44px; min-width: 44px; }}
 QScrollBar::add-line, QScrollBar::sub-line {{ width: 0; height: 0; }}
 QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
 QToolTip {{ background: {c.raised}; color: {c.text}; border: 1px solid {c.line}; padding: 4px; }}

@@ -6,7 +6,7 @@ the session.
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QObject, QTimer
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QApplication,
@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 from station.domain import Origin
 from station.panel import theme, words
 from station.panel.card import label, scrolled
+from station.panel.keys import Keys
 from station.panel.live.page import LivePage
 from station.panel.page import Page
 from station.panel.session import Session
@@ -134,6 +135,8 @@ class Window(QMainWindow):
         middle.addWidget(nav)
         middle.addWidget(self._stack, 1)
         rows.addLayout(middle, 1)
+        self._foot = QVBoxLayout()
+        rows.addLayout(self._foot)
         self.setCentralWidget(body)
         self.go(chosen)
         self._on_user()
@@ -160,9 +163,21 @@ class Window(QMainWindow):
         self._language.clicked.connect(lambda: self.speak(other))
         self._theme.setToolTip(translate("window", "dark or light"))
         self._theme.clicked.connect(lambda: self.dress("light" if theme.name() == "dark" else "dark"))
-        for button in (self._language, self._theme):
+        self._typing = QPushButton("⌨")
+        self._typing.setCheckable(True)
+        self._typing.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._typing.setToolTip(translate("window", "keys on the screen"))
+        self._typing.toggled.connect(self._type)
+        for button in (self._typing, self._language, self._theme):
             row.addWidget(button)
         return header
+
+    def _type(self, wanted: bool) -> None:
+        """Made when asked for: most windows have a keyboard."""
+        if wanted:
+            self._foot.addWidget(Keys())
+        elif (item := self._foot.takeAt(0)) is not None and (keys := item.widget()) is not None:
+            keys.deleteLater()
 
     @property
     def page(self) -> Page:

@@ -4,7 +4,7 @@ import time
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
 from station.channel import Inbox, Publisher, Subscriber
@@ -12,6 +12,8 @@ from station.domain import Image, Ring
 from station.errors import LineError
 from station.events import Counts
 from station.panel import theme
+from station.panel.history.page import HistoryPage
+from station.panel.keys import Keys
 from station.panel.live.page import LivePage
 from station.panel.setup.page import SetupPage
 from station.panel.window import HEADER_PX, NAV_PX, PAGES, Window
@@ -162,6 +164,23 @@ def test_keys_lead_to_pages(window: Window, qtbot: QtBot) -> None:
     for index, key in enumerate((Qt.Key.Key_F1, Qt.Key.Key_F2, Qt.Key.Key_F3)):
         qtbot.keyClick(window, key)
         assert window._stack.currentIndex() == index
+
+
+def test_keys_on_the_screen_write_where_the_cursor_stands(window: Window, qtbot: QtBot) -> None:
+    window.speak("de")
+    window.go(1)
+    page = window.page
+    assert isinstance(page, HistoryPage)
+    window.activateWindow()
+    page.fields.serial.setFocus()
+    window._typing.click()
+    (keys,) = window.findChildren(Keys)
+    for text in ("⇧", "z", "ü", "␣", "7", "⌫"):
+        (key,) = [button for button in keys.findChildren(QPushButton) if button.text().lower() == text]
+        qtbot.mouseClick(key, Qt.MouseButton.LeftButton)
+    assert page.fields.serial.text() == "Zü "
+    window._typing.click()
+    qtbot.waitUntil(lambda: not window.findChildren(Keys), timeout=1000)
 
 
 def test_a_lost_plc_is_told(window: Window) -> None:

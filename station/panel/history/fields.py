@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QComboBox, QDateTimeEdit, QHBoxLayout, QLineEdit, 
 from station.archive.reader import Row, Wanted, find
 from station.archive.review import Review, State, reviews
 from station.domain import SEGMENTS, Purpose, Reason, Verdict
-from station.panel.card import label
+from station.panel.card import Choice, label
 from station.panel.session import FILM
 from station.panel.words import data, translate
 
@@ -28,7 +28,7 @@ class SearchFields(QWidget):
         self.serial = QLineEdit()
         self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
         self.serial.setMinimumWidth(120)
-        self.since, self.verdict, self.kind, self.segment, self.score, self.state = (QComboBox() for _ in range(6))
+        self.since, self.verdict, self.kind, self.segment, self.score, self.state = (Choice() for _ in range(6))
         self._fill()
         self.look_up = QPushButton(translate("history", "Search"))
         now = QDateTime.currentDateTime()

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QAbstractItemView, QListView, QListWidget, QListWi
 from station.archive.reader import Row
 from station.archive.review import Review, State
 from station.panel import theme
+from station.panel.card import by_finger
 from station.panel.words import data
 
 SYMBOLS = {"OK": "✓", "NOK": "✗", "ERROR": "!"}
@@ -26,6 +27,7 @@ class Filmstrip(QListWidget):
         self.setIconSize(QSize(ICON_PX, ICON_PX))
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setUniformItemSizes(True)
+        by_finger(self)
         self.as_gallery(False)
 
     def as_gallery(self, gallery: bool) -> None:

@@ -1711,6 +1711,10 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>dunkel oder hell</translation>
     </message>
     <message>
+        <source>keys on the screen</source>
+        <translation>Tasten auf dem Bildschirm</translation>
+    </message>
+    <message>
         <source>SIMULATED CAMERA</source>
         <translation>SIMULIERTE KAMERA</translation>
     </message>

@@ -7,11 +7,11 @@ from enum import IntFlag
 
 from PySide6.QtCore import QSignalBlocker, Qt, QTimer
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QComboBox, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout
 
 from station.errors import RecordError, WeldgateError
 from station.panel import theme
-from station.panel.card import Table, label, titled
+from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
@@ -52,7 +52,7 @@ class LinePage(Page):
         self.service = QPushButton(translate("line", "Service mode"))
         self.service.setCheckable(True)
         self.service.clicked.connect(self._toggle_service)
-        self.bits = QComboBox()
+        self.bits = Choice()
         self.bits.addItem(translate("line", "no bit"), 0)
         for flag in Status:
             self.bits.addItem(str(flag.name), int(flag))

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtWidgets import QComboBox, QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from station.imagefile import read_image
 from station.inspection import Inspector
-from station.panel.card import Table, label, titled
+from station.panel.card import Choice, Table, label, titled
 from station.panel.kept import judged
 from station.panel.live.weld_view import Drawn, WeldView
 from station.panel.page import Page
@@ -64,7 +64,7 @@ class ReplayPage(Page):
         self._on_user()
 
     def _lay_out(self) -> None:
-        self.what, self.folder, self.recipe = QComboBox(), QLineEdit(), QComboBox()
+        self.what, self.folder, self.recipe = Choice(), QLineEdit(), Choice()
         newest = translate("replay", "the newest of this station:")
         for count in NEWEST:
             self.what.addItem(f"{newest} {count}", count)

@@ -3,11 +3,11 @@
 from datetime import datetime
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout
 
 from station.archive.journal import Kind, entries
 from station.errors import RecordError
-from station.panel.card import Table, label
+from station.panel.card import Choice, Table, label
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
@@ -22,7 +22,7 @@ class JournalPage(Page):
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self.kind = QComboBox()
+        self.kind = Choice()
         self.kind.addItem(translate("journal", "everything"), None)
         for kind in Kind:
             self.kind.addItem(data(kind), kind)

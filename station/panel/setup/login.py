@@ -2,10 +2,10 @@
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QComboBox, QFormLayout, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from station.errors import LoginError, RecordError
-from station.panel.card import label, titled
+from station.panel.card import Choice, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
@@ -18,7 +18,7 @@ class LoginPage(Page):
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self.name, self.pin = QComboBox(), QLineEdit()
+        self.name, self.pin = Choice(), QLineEdit()
         self.name.setEditable(True)
         self.name.setMinimumWidth(260)
         self.pin.setEchoMode(QLineEdit.EchoMode.Password)

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
-from PySide6.QtWidgets import QComboBox, QFormLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from station.errors import LoginError, RecordError
-from station.panel.card import Table, label, titled
+from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
@@ -19,7 +19,7 @@ class PeoplePage(Page):
         super().__init__()
         self._session = session
         self.table = Table((translate("people", "name"), translate("people", "level")), stretch=0)
-        self.name, self.level, self.pin = QLineEdit(), QComboBox(), QLineEdit()
+        self.name, self.level, self.pin = QLineEdit(), Choice(), QLineEdit()
         self.pin.setEchoMode(QLineEdit.EchoMode.Password)
         for level in Level:
             self.level.addItem(data(level.name.lower()), level)

@@ -3,14 +3,14 @@
 from dataclasses import dataclass, replace
 
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QComboBox, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from station.archive.reader import Wanted, find, read_words
 from station.archive.whatif import WhatIf, what_if
 from station.classify.onnx import Classifier
 from station.classify.thresholds import Thresholds
 from station.errors import ModelError, WeldgateError
-from station.panel.card import Table, label, titled
+from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.setup.change import MIN_REASON, change
@@ -55,7 +55,7 @@ class RecipePage(Page):
         self._in_use: Values | None = None
         self._asked: Values | None = None
         """Values of the what-if that is shown."""
-        self.recipe = QComboBox()
+        self.recipe = Choice()
         word = translate("recipe", "recipe")
         for number in sorted({1, *session.settings.recipes}):
             self.recipe.addItem(f"{word} {number}", number)

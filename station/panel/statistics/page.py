@@ -4,14 +4,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QComboBox, QFileDialog, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
+from PySide6.QtWidgets import QFileDialog, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Wanted, find, read_records, read_words
 from station.archive.schema import NAME as INDEX
 from station.archive.statistics import Summary, summarise
 from station.domain import Verdict
 from station.errors import WeldgateError
-from station.panel.card import Table, label, titled
+from station.panel.card import Choice, Table, label, titled
 from station.panel.live.clock_face import ClockFace
 from station.panel.page import Page
 from station.panel.session import Session
@@ -56,7 +56,7 @@ class StatisticsPage(Page):
         self._first.start()
 
     def _lay_out(self) -> None:
-        self.how_many = QComboBox()
+        self.how_many = Choice()
         last = translate("statistics", "the last")
         for count in PARTS:
             self.how_many.addItem(f"{last} {count}", count)
