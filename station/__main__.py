@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from station import __version__
@@ -129,12 +130,17 @@ def _replay(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
+    from station.adjustments import words
     from station.check import check
+    from station.errors import SettingsError
 
     problems = 0
     for name, problem in check(arguments.settings):
         print(f"{'ok  ' if problem is None else 'BAD '} {name}{'' if problem is None else ': ' + problem}")
         problems += problem is not None
+    with suppress(SettingsError):  # said above
+        for change in words(arguments.settings):
+            print(f"note changed at the station, over {arguments.settings.name}: {change}")
     return 1 if problems else 0
 
 

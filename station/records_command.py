@@ -100,14 +100,14 @@ def _line(row: "Row") -> str:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
-    from station.archive.journal import verify_journal
+    from station.archive.journal import entries, verify_journal
     from station.archive.reader import find, verify
 
     bad = 0
     for name, problem in chain(verify(arguments.folder), verify_journal(arguments.folder)):
         bad += 1
         print(f"weldgate: {arguments.folder}: {name}: {problem}", file=sys.stderr)
-    print(f"{len(find(arguments.folder))} records, {bad} problems")
+    print(f"{len(find(arguments.folder))} records, {len(entries(arguments.folder))} entries of the journal, {bad} problems")
     return 1 if bad else 0
 
 

@@ -15,6 +15,7 @@ from station.archive.review import Opinion, reviews
 from station.domain import SEGMENTS, Inspection, Reason
 from station.errors import ImageError, LocateError, RecordError
 from station.imagefile import encode_png, read_image
+from station.records import Record
 from station.vision.unwrap import segments, unwrap
 
 CLASS_FOLDERS = {None: "ok", Reason.HOLE: "hole", Reason.MISSING_WELD: "missing_weld"}
@@ -110,18 +111,40 @@ class _Stopped(Exception):
     """Nobody wants it any longer."""
 
 
+Kinds = dict[int, Reason | None]
+"""What to call the crops of a part, by the number of the segment; those of other segments are left out."""
+
+
+def _as_judged(record: Record) -> Kinds:
+    return dict(enumerate(defect_kinds(record), start=1))
+
+
+def _all_ok(record: Record) -> Kinds:
+    return dict.fromkeys(range(1, SEGMENTS + 1))
+
+
 def _reviewed(entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool]) -> Iterator[tuple[Path, str]]:
-    """The same of parts that two people agree on: where they say it was a false call, all crops are ok."""
-    agreed = {number: review.agreed for number, review in reviews(folder).items()}
-    for all_ok, opinion in ((False, Opinion.RIGHT), (True, Opinion.FALSE_CALL)):
-        yield from _dataset([e for e in entries if agreed.get(e.row.inspection_id) is opinion], folder, target, going, all_ok)
-    for entry in entries:
-        if agreed.get(entry.row.inspection_id) is Opinion.MISSED:
-            yield entry.path, "a defect was missed: nobody said in which segment, its crops are left out"
+    """The same of parts that two people agree on.
+
+    Where they say it was a false call, all crops are ok; of a missed defect only the crops in which both see the same kind.
+    """
+    known = reviews(folder)
+
+    def said(opinion: Opinion) -> list[Listed]:
+        return [e for e in entries if e.row.inspection_id in known and known[e.row.inspection_id].agreed is opinion]
+
+    def as_seen(record: Record) -> Kinds:
+        return {**known[record.inspection_id].agreed_marks}
+
+    for entry in said(Opinion.MISSED):
+        if not known[entry.row.inspection_id].agreed_marks:
+            yield entry.path, "a defect was missed: the two do not see the same kind in any segment, its crops are left out"
+    for opinion, kinds in ((Opinion.RIGHT, _as_judged), (Opinion.FALSE_CALL, _all_ok), (Opinion.MISSED, as_seen)):
+        yield from _dataset(said(opinion), folder, target, going, kinds)
 
 
 def _dataset(
-    entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool], all_ok: bool = False
+    entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool], kinds: Callable[[Record], Kinds] = _as_judged
 ) -> Iterator[tuple[Path, str]]:
     """ok, hole, missing_weld: crops by what the station found, for people to correct before anything is trained on them."""
     for name in CLASS_FOLDERS.values():
@@ -140,9 +163,9 @@ def _dataset(
         except (ImageError, LocateError) as error:
             yield entry.path, str(error)
             continue
-        kinds = [None] * SEGMENTS if all_ok else defect_kinds(record)
-        for index, (crop, kind) in enumerate(zip(segments(strip), kinds, strict=True), start=1):
-            (target / CLASS_FOLDERS[kind] / f"{record.inspection_id:08d}_{index:02d}.png").write_bytes(encode_png(crop))
+        crops = segments(strip)
+        for number, kind in kinds(record).items():
+            (target / CLASS_FOLDERS[kind] / f"{record.inspection_id:08d}_{number:02d}.png").write_bytes(encode_png(crops[number - 1]))
 
 
 def _dfq(target: Path, entries: list[Listed]) -> None:
@@ -151,7 +174,7 @@ def _dfq(target: Path, entries: list[Listed]) -> None:
     lines = [f"K0100 {SEGMENTS}", "K1001 weldgate", "K1002 circular laser weld"]
     for i in range(1, SEGMENTS + 1):
         lines += [f"K2001/{i} {i}", f"K2002/{i} score of NOK, segment {i}", f"K2004/{i} 0", f"K2022/{i} 4", f"K2110/{i} 0"]
-        lines += [f"K2111/{i} {judged[0].record.provenance.hole_threshold:g}"] if judged and judged[0].record else []
+        lines += [f"K2111/{i} {judged[0].record.provenance.thresholds.of(i - 1).hole:g}"] if judged and judged[0].record else []
     for entry in judged:
         if entry.record is not None:
             when = _qdas_time(entry.record.grabbed_at)

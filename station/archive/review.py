@@ -1,10 +1,12 @@
 """What people say of verdicts afterwards. The verdict itself is never changed; an opinion counts once two people share it."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 
 from station.archive.journal import Kind, append, entries
+from station.domain import Reason
 from station.errors import LoginError
 
 
@@ -27,11 +29,17 @@ class State(StrEnum):
     DISPUTED = "disputed"
 
 
+Marks = dict[int, Reason]
+"""Kind of the defect that was missed in a segment, by its number."""
+
+
 @dataclass(frozen=True, slots=True)
 class Review:
     """All opinions of one part: the last of each person."""
 
     opinions: dict[str, Opinion]
+    marks: dict[str, Marks] = field(default_factory=dict)
+    """Where they say that a defect was missed."""
 
     @property
     def state(self) -> State:
@@ -47,28 +55,50 @@ class Review:
         """What two people say."""
         return next(iter(self.opinions.values())) if self.state is State.AGREED else None
 
+    @property
+    def agreed_marks(self) -> Marks:
+        """What all of them see in the same segment."""
+        if self.agreed is not Opinion.MISSED:
+            return {}
+        first, *others = (self.marks.get(who, {}) for who in self.opinions)
+        return {number: kind for number, kind in first.items() if all(other.get(number) is kind for other in others)}
+
 
 def possible(verdict: str) -> tuple[Opinion, ...]:
     """Opinions that one can have of a verdict; none of a part that was not judged."""
     return {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}.get(verdict, ())
 
 
-def give(folder: Path, who: str, may_second: bool, inspection_id: int, verdict: str, opinion: Opinion, comment: str = "") -> None:
+def give(
+    folder: Path,
+    who: str,
+    may_second: bool,
+    inspection_id: int,
+    verdict: str,
+    opinion: Opinion,
+    comment: str = "",
+    marks: Mapping[int, Reason] | None = None,
+) -> None:
     """`may_second`: whether a second person of their level is believed; raises LoginError if it is needed, RecordError.
 
-    Raises ValueError if one cannot think so of that verdict.
+    `marks`: where a defect was missed. Raises ValueError if one cannot think so of that verdict.
     """
-    if opinion not in possible(verdict):
+    if opinion not in possible(verdict) or (marks and opinion is not Opinion.MISSED):
         raise ValueError(f"{opinion} cannot be said of {verdict}")
     before = reviews(folder).get(inspection_id)
     if not may_second and before is not None and set(before.opinions) - {who}:
         raise LoginError("the second review needs the level quality")
-    append(folder, Kind.REVIEW, who, str(inspection_id), verdict, opinion, comment)
+    where = ", ".join(f"{number} {kind}" for number, kind in sorted((marks or {}).items()))
+    append(folder, Kind.REVIEW, who, str(inspection_id), verdict, f"{opinion}: {where}" if where else opinion, comment)
 
 
 def reviews(folder: Path) -> dict[int, Review]:
     """All reviewed parts. Raises RecordError."""
-    found: dict[int, dict[str, Opinion]] = {}
+    found: dict[int, Review] = {}
     for entry in entries(folder, (Kind.REVIEW,), newest_first=False):
-        found.setdefault(int(entry.subject), {})[entry.who] = Opinion(entry.after)
-    return {number: Review(opinions) for number, opinions in found.items()}
+        opinion, _, where = entry.after.partition(": ")
+        review = found.setdefault(int(entry.subject), Review({}))
+        review.opinions[entry.who] = Opinion(opinion)
+        pairs = (mark.split(" ", 1) for mark in where.split(", ") if mark)
+        review.marks[entry.who] = {int(number): Reason(kind) for number, kind in pairs}
+    return found

@@ -8,13 +8,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
 from deploy.demo import free_ports, running, shipped_parts, station_toml
 from station import adjustments
 from station.archive.journal import Kind, entries
 from station.archive.review import Opinion, State, reviews
+from station.domain import Reason
 from station.imagefile import read_image
 from station.panel.app import open_window
 from station.panel.history.page import HistoryPage
@@ -305,6 +306,14 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
     qtbot.mouseClick(page.show_map, LEFT)
     qtbot.waitUntil(lambda: page.record.strip._map is not None, timeout=20_000)
     fields.state.setCurrentIndex(0)
+    ok = next(a.inspection_id for a in answers if a.verdict is VerdictCode.OK)
+    page.film.setCurrentRow(list(page.film.rows).index(ok))
+    missed = page.opinions[Opinion.MISSED]
+    assert not missed.isEnabled(), "nobody has said where"
+    for _ in range(2):
+        qtbot.mouseClick(page.record.strip, LEFT, pos=QPoint(page.record.strip.width() // 2, 20))
+    qtbot.mouseClick(missed, LEFT)
+    assert reviews(window.session.folder)[ok].marks == {"Ada": {11: Reason.MISSING_WELD}}
     fields.since.setCurrentText("from … to …")
     assert fields.begin.isVisible()
     assert len(page.film.rows) == 4

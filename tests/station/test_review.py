@@ -18,6 +18,7 @@ from station.archive.writer import Archive
 from station.classify.thresholds import Thresholds
 from station.condition import Seen, alarms, health
 from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Reason, Verdict
+from station.errors import LoginError
 from station.plc.alarms import Alarm
 from station.plc.registers import Offline
 from station.records import Part, Record
@@ -39,7 +40,7 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
     folder = tmp_path / "records"
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     image = frames[label_with("hole")["frame"]]
-    for number, inspection in enumerate([nok_inspection(), nok_inspection(), ok_inspection(), nok_inspection()]):
+    for number, inspection in enumerate([nok_inspection(), nok_inspection(), ok_inspection(), nok_inspection(), ok_inspection()]):
         frame = Frame(image, NOON + timedelta(minutes=number), "cam", Origin.SIMULATED)
         archive.commit(archive.begin(frame), inspection, Part(f"C{number}", number + 1, Origin.SIMULATED), provenance(), frame.grabbed_at)
     archive.close()
@@ -47,16 +48,25 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
     for who in ("Ada", "Bob"):
         give(folder, who, True, 1, "NOK", Opinion.RIGHT)
         give(folder, who, True, 2, "NOK", Opinion.FALSE_CALL, "soot")
-        give(folder, who, True, 3, "OK", Opinion.MISSED)
+        give(folder, who, True, 3, "OK", Opinion.MISSED, marks={7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD})
+        marks = {7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD, 9: Reason.MISSING_WELD}
+        give(folder, who, True, 5, "OK", Opinion.MISSED, "see the section", marks)
     give(folder, "Ada", True, 4, "NOK", Opinion.FALSE_CALL)
     with pytest.raises(ValueError, match="cannot be said of ERROR"):
-        give(folder, "Ada", True, 5, "ERROR", Opinion.RIGHT)
+        give(folder, "Ada", True, 6, "ERROR", Opinion.RIGHT)
+    with pytest.raises(ValueError, match="cannot be said of OK"):
+        give(folder, "Ada", True, 5, "OK", Opinion.RIGHT, marks={7: Reason.HOLE})
+    with pytest.raises(LoginError, match="level quality"):
+        give(folder, "Cy", False, 4, "NOK", Opinion.RIGHT)
     assert [reviews(folder)[n].state for n in (1, 2, 3, 4)] == [State.AGREED] * 3 + [State.ONE]
     assert {path: path.read_bytes() for path in folder.rglob("*.json")} == before
     problems = list(export(read_records(folder), folder, tmp_path / "out", "reviewed"))
-    assert [said for _, said in problems] == ["a defect was missed: nobody said in which segment, its crops are left out"]
+    assert [said for _, said in problems] == [
+        "a defect was missed: the two do not see the same kind in any segment, its crops are left out"
+    ]
     crops = {name: sorted(p.name for p in (tmp_path / "out" / name).iterdir()) for name in ("ok", "hole", "missing_weld")}
     assert crops["hole"] == ["00000001_04.png"]
+    assert crops["missing_weld"] == ["00000005_09.png"]
     assert len(crops["ok"]) == 2 * SEGMENTS - 1
     assert possible("ERROR") == ()
 

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, 
 from station.archive.export import export
 from station.archive.reader import Row, Wanted, read_record, read_records
 from station.archive.review import Opinion, Review, State, give, possible, reviews
+from station.domain import Verdict
 from station.errors import ImageError, LocateError, RecordError, WeldgateError
 from station.panel.card import label
 from station.panel.history.fields import SearchFields
@@ -41,6 +42,7 @@ class HistoryPage(Page):
         """Read for the gallery."""
         self._lay_out()
         self.film.currentItemChanged.connect(self._on_chosen)
+        self.record.marked.connect(self._on_user)
         self.gallery.toggled.connect(self._on_gallery)
         self.fields.asked.connect(self.search)
         self._work.done.connect(self._on_pictures)
@@ -142,7 +144,8 @@ class HistoryPage(Page):
         number, user = self.film.chosen(), self._session.user
         row = None if number is None else self.film.rows.get(number)
         for opinion, button in self.opinions.items():
-            button.setEnabled(user is not None and row is not None and opinion in possible(row.verdict))
+            where = opinion is not Opinion.MISSED or bool(self.record.marks)
+            button.setEnabled(user is not None and row is not None and opinion in possible(row.verdict) and where)
         for button in (self.export, self.list):
             button.setEnabled(user is not None)
         self.show_map.setEnabled(row is not None and self.record.strip_shown)
@@ -152,7 +155,9 @@ class HistoryPage(Page):
         review = self._reviews().get(row.inspection_id)
         state = data(review.state if review else State.NONE)
         said = ", ".join(f"{who}: {data(opinion)}" for who, opinion in review.opinions.items()) if review else ""
+        missed = user is not None and row.verdict == Verdict.OK and not self.record.marks
         hint = translate("history", "log in to review") if user is None else ""
+        hint = translate("history", "touch the cells in which a defect was missed") if missed else hint
         self._review.setText(" · ".join(text for text in (state, said, hint) if text))
 
     def _reviews(self) -> dict[int, Review]:
@@ -170,7 +175,9 @@ class HistoryPage(Page):
             return
         try:
             user, verdict = self._session.who(Level.OPERATOR), self.film.rows[number].verdict
-            give(self._session.folder, user.name, user.level >= Level.QUALITY, number, verdict, opinion, self.comment.text().strip())
+            marks = self.record.marks if opinion is Opinion.MISSED else {}
+            second, comment = user.level >= Level.QUALITY, self.comment.text().strip()
+            give(self._session.folder, user.name, second, number, verdict, opinion, comment, marks)
         except WeldgateError as error:
             self._problem.setText(data(str(error)))
             return

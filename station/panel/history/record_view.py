@@ -2,12 +2,14 @@
 
 from pathlib import Path
 
+from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
 from station.archive.decided import segment_kinds
 from station.archive.reader import Row, read_record
+from station.archive.review import Marks
 from station.classify.thresholds import Thresholds
-from station.domain import Reason, Ring
+from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, Ring, Verdict
 from station.errors import ImageError, LocateError
 from station.panel.card import Facts, Table, label, titled
 from station.panel.kept import of_record
@@ -21,13 +23,18 @@ from station.records import Record
 class RecordView(QWidget):
     """Picture, strip, findings, figures, who judged."""
 
+    marked = Signal()
+
     def __init__(self) -> None:
         super().__init__()
         self.record: Record | None = None
         self.strip_shown = False
         """Whether its picture is there."""
+        self.marks: Marks = {}
+        """Where somebody says that a defect was missed."""
         self.weld, self.strip = WeldView(), StripView(96)
         self.weld.setMinimumSize(260, 250)
+        self.strip.touched.connect(self.mark)
         self.findings = Table(
             (
                 translate("history", "finding"),
@@ -75,12 +82,22 @@ class RecordView(QWidget):
 
     def show_nothing(self, why: str = "") -> None:
         """No record, or one that cannot be read."""
-        self.record, self.strip_shown = None, False
+        self.record, self.strip_shown, self.marks = None, False, {}
         self.problem.setText(why)
         self.weld.show_weld(None, translate("history", "the record cannot be read") if why else translate("history", "no part"))
         self.strip.show_strip(None, (), ())
         self.findings.fill([])
         self.facts.set(**dict.fromkeys(self.facts.values, "–"))
+
+    def mark(self, index: int) -> None:
+        """A cell of an OK part was touched: hole, missing weld, nothing, in turns."""
+        if self.record is None or self.record.verdict is not Verdict.OK:
+            return
+        now = self.marks.pop(index + 1, None)
+        if now is not Reason.MISSING_WELD:
+            self.marks[index + 1] = Reason.HOLE if now is None else Reason.MISSING_WELD
+        self.strip.show_marks({number: data(kind) for number, kind in self.marks.items()})
+        self.marked.emit()
 
     def show_row(self, folder: Path, row: Row) -> None:
         """Read it from disk; what is missing or wrong is said."""
@@ -92,6 +109,7 @@ class RecordView(QWidget):
         self.problem.setText(said)
         record, inspection = self.record, self.record.inspection
         nok = tuple(kind is not None for kind in segment_kinds(record))
+        self.marks = {}
         try:
             drawn, strip = of_record(folder, record)
             self.weld.show_weld(drawn)
@@ -99,11 +117,13 @@ class RecordView(QWidget):
             strip = None
             self.weld.show_weld(None, data(str(error)) if len(str(error)) < 60 else translate("history", "its picture cannot be read"))
         self.strip.show_strip(strip, nok_scores(record), nok)
+        self.strip.show_marks({})
         self.strip_shown = strip is not None
+        tolerated = translate("history", "tolerated")
         self.findings.fill(
             [
                 (
-                    data(f.kind),
+                    data(f.kind) + (f" ({tolerated})" if nok and not any(nok[s] for s in _segments(f)) else ""),
                     f"{f.start_deg:.1f}",
                     f"{f.end_deg:.1f}",
                     f"{f.length_mm:.2f}",
@@ -135,6 +155,12 @@ class RecordView(QWidget):
             hash=f"{p.model_hash[:12]} · {p.config_crc:04X}",
             origin=f"{data(record.origin)} · {data(record.purpose)}",
         )
+
+
+def _segments(finding: Finding) -> list[int]:
+    """Indices of the segments that it lies in."""
+    first, last = int(finding.start_deg // SEGMENT_DEG), int(finding.end_deg // SEGMENT_DEG)
+    return [index % SEGMENTS for index in range(first, last + 1)]
 
 
 def _ring(ring: Ring) -> str:

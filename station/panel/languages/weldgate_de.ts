@@ -800,6 +800,10 @@
         <translation>zum Nachprüfen anmelden</translation>
     </message>
     <message>
+        <source>touch the cells in which a defect was missed</source>
+        <translation>die Zellen antippen, in denen ein Fehler übersehen wurde</translation>
+    </message>
+    <message>
         <source>pictures</source>
         <translation>Bilder</translation>
     </message>
@@ -918,6 +922,10 @@
     <message>
         <source>its picture cannot be read</source>
         <translation>das Bild ist nicht lesbar</translation>
+    </message>
+    <message>
+        <source>tolerated</source>
+        <translation>geduldet</translation>
     </message>
     <message>
         <source>yes</source>

@@ -22,6 +22,7 @@ class StripView(QWidget):
         self._map: QImage | None = None
         self._scores: tuple[float, ...] = ()
         self._nok: tuple[bool, ...] = ()
+        self._marks: dict[int, str] = {}
         self.setMinimumHeight(height_px)
 
     def show_strip(self, image: QImage | None, scores: tuple[float, ...], nok: tuple[bool, ...]) -> None:
@@ -32,6 +33,11 @@ class StripView(QWidget):
     def show_map(self, overlay: QImage) -> None:
         """ARGB picture over the strip."""
         self._map = overlay
+        self.update()
+
+    def show_marks(self, marks: dict[int, str]) -> None:
+        """Words in the cells of some segments, by number."""
+        self._marks = marks
         self.update()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
@@ -62,6 +68,16 @@ class StripView(QWidget):
             score = f"\n{self._scores[index]:.2f}" if index < len(self._scores) else ""
             mark = "✗" if nok else ""
             painter.drawText(cell, Qt.AlignmentFlag.AlignCenter, f"{mark}{index + 1}{score}")
+            inside = QRectF(index * width + 2, 2, width - 4, picture.height() - 4)
             if nok:
                 painter.setPen(QPen(QColor("#ff5a4f"), 3))
-                painter.drawRect(QRectF(index * width + 2, 2, width - 4, picture.height() - 4))
+                painter.drawRect(inside)
+            if index + 1 in self._marks:
+                painter.setPen(QPen(QColor(c.warn), 3))
+                painter.drawRect(inside)
+                painter.fillRect(inside, QColor(16, 18, 20, 150))
+                painter.setPen(QColor("#ffcf4a"))
+                font.setPixelSize(11)
+                painter.setFont(font)
+                flags = int(Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap)
+                painter.drawText(inside, flags, self._marks[index + 1])

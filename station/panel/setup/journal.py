@@ -77,7 +77,7 @@ class JournalPage(Page):
                     data(e.kind),
                     data(e.subject),
                     data(before),
-                    data(after) if after else "",
+                    _said(after),
                     data(e.reason),
                 )
             )
@@ -86,3 +86,9 @@ class JournalPage(Page):
     def close_page(self) -> None:
         """Stop following."""
         self._timer.stop()
+
+
+def _said(after: str) -> str:
+    """In words; an opinion may have segments behind it."""
+    word, colon, where = after.partition(": ")
+    return f"{data(word)}{colon}{where}" if after else ""
