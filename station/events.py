@@ -10,6 +10,8 @@ from station.domain import Origin, Ring
 from station.plc.registers import BY_NAME, STATUS_START, Offline, Status, VerdictCode, word
 from station.records import Record
 
+STATUS_LOST_S = 2.0
+"""A status older than this says nothing: they come several times a second."""
 SETTING_UP = -1
 """Number of a picture that is not judged; a part whose record could not be written has 0."""
 

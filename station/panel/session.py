@@ -13,9 +13,8 @@ from PySide6.QtGui import QImage
 from station.archive.journal import Kind, append
 from station.domain import Purpose, Verdict
 from station.errors import LoginError, RecordError, WeldgateError
-from station.events import SETTING_UP, LookEvent, PartEvent, Preview, StatusEvent
+from station.events import SETTING_UP, STATUS_LOST_S, LookEvent, PartEvent, Preview, StatusEvent
 from station.panel.bridge import Bridge
-from station.panel.live.lamp_state import STATUS_LOST_S
 from station.plc.alarms import Alarm
 from station.plc.registers import Offline, Status
 from station.requests import Reload, Request, ResetCounts, Service, TestPicture
@@ -58,6 +57,8 @@ class Session(QObject):
     preview_came = Signal()
     look_came = Signal(object)
     """LookEvent"""
+    part_wanted = Signal(int)
+    """Somebody wants to look at this part of the history."""
     user_changed = Signal()
     service_changed = Signal()
     settings_changed = Signal()
@@ -136,7 +137,16 @@ class Session(QObject):
 
     def reload(self, undo: Callable[[], None]) -> bool:
         """False if no engine is there. `undo` is done if the engine refuses the settings."""
-        return self._ask_to_reload(undo)
+        before = self.change
+        if before is None or before.undo is None:
+            return self._ask_to_reload(undo)
+        first = before.undo  # not yet taken up: both are refused or used
+
+        def both() -> None:
+            undo()
+            first()
+
+        return self._ask_to_reload(both)
 
     def _ask_to_reload(self, undo: Callable[[], None] | None) -> bool:
         now_s = time.time()
@@ -237,9 +247,7 @@ class Session(QObject):
                 self.thumbs.pop(self.parts[0].record.inspection_id, None)
             self.parts.append(event)
             if event.record.verdict is Verdict.NOK and event.record.purpose is Purpose.PART:
-                preview = self.preview
-                fits = preview is not None and preview.inspection_id == event.record.inspection_id
-                self.last_nok = Pinned(event, preview if fits else None)
+                self.last_nok = Pinned(event, self.preview if shows(self.preview, event) else None)
         self.part_came.emit()
 
     def _on_preview(self, preview: Preview) -> None:
@@ -249,10 +257,10 @@ class Session(QObject):
             return
         self.preview = preview
         pinned = self.last_nok
-        if pinned is not None and preview.inspection_id == pinned.part.record.inspection_id:
+        if pinned is not None and shows(preview, pinned.part):
             self.last_nok = Pinned(pinned.part, preview)
         last = self.last
-        if last is not None and preview.inspection_id == last.record.inspection_id:
+        if last is not None and shows(preview, last):
             image = QImage.fromData(preview.frame_jpeg)
             if not image.isNull():
                 mode = Qt.TransformationMode.SmoothTransformation
@@ -268,6 +276,11 @@ class Session(QObject):
         self._renew.stop()
         self._idle.stop()
         self.bridge.close()
+
+
+def shows(preview: Preview | None, part: PartEvent) -> bool:
+    """Whether a picture is of that part; parts that could not be recorded have no number of their own."""
+    return preview is not None and preview.inspection_id == part.record.inspection_id > 0
 
 
 def _bit(bit: int) -> str:

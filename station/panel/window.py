@@ -87,6 +87,7 @@ class Window(QMainWindow):
         self._build(0)
         session.status_changed.connect(self._on_status)
         session.user_changed.connect(self._on_user)
+        session.part_wanted.connect(self._open_part)
         self._ageing = QTimer(self)
         self._ageing.timeout.connect(self._on_status)
         self._ageing.start(AGE_MS)
@@ -191,6 +192,10 @@ class Window(QMainWindow):
             self._places[index].addWidget(scrolled(self._pages[index]))
         self._stack.setCurrentIndex(index)
         self._buttons.button(index).setChecked(True)
+
+    def _open_part(self, number: int) -> None:
+        self.go(1)
+        self.page.open_part(number)  # type: ignore[attr-defined]
 
     def speak(self, language: str) -> None:
         """Another language, at once."""

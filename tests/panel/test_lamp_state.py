@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from station.domain import Inspection, Origin, Purpose, Reason
-from station.events import PartEvent, StatusEvent
-from station.panel.live.lamp_state import FRESH_S, GONE_S, STATUS_LOST_S, WHY_OFFLINE, Tone, lamp
+from station.events import STATUS_LOST_S, PartEvent, StatusEvent
+from station.panel.live.lamp_state import FRESH_S, GONE_S, WHY_OFFLINE, Tone, lamp
 from station.plc.alarms import Alarm
 from station.plc.registers import Offline, VerdictCode
 from tests.panel.made import part, status

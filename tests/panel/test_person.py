@@ -249,6 +249,11 @@ def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(station: tuple[Pa
     qtbot.waitUntil(live.show_map.isEnabled, timeout=10_000)
     qtbot.mouseClick(live.show_map, LEFT)
     qtbot.waitUntil(lambda: live._nok_strip._map is not None, timeout=20_000)
+    qtbot.mouseClick(live._nok_strip, LEFT)
+    history = window.page
+    assert isinstance(history, HistoryPage)
+    assert window.session.last_nok is not None
+    assert history.film.chosen() == window.session.last_nok.part.record.inspection_id
     overlay = live._nok_strip._map
     assert overlay is not None
     seen = [overlay.pixelColor(x, y).alpha() for x in range(0, overlay.width(), 8) for y in range(0, overlay.height(), 4)]

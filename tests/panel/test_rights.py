@@ -23,12 +23,13 @@ from station.panel.setup.recipe import RecipePage
 from station.panel.window import Window
 from station.plc.alarms import Alarm
 from station.plc.registers import Status
+from station.preview import make_preview
 from station.recipe import prepare
 from station.records import Part
 from station.requests import Service
 from station.users import Level, User
-from tests.panel.made import status
-from tests.parts import label_with, ok_inspection
+from tests.panel.made import part, status
+from tests.parts import label_with, nok_inspection, ok_inspection
 
 ADA, BOB, QUENTIN = User("Ada", Level.SETTER), User("Bob", Level.OPERATOR), User("Quentin", Level.QUALITY)
 REASON = "trial of the threshold"
@@ -200,3 +201,22 @@ def test_an_alarm_of_the_run_before_is_over_when_it_is_not_there_any_more(tmp_pa
     second.close()
     kinds = [(e.kind, int(e.subject[3:], 16)) for e in entries(tmp_path, (Kind.ALARM, Kind.ALARM_OVER), newest_first=False)]
     assert kinds == [*((Kind.ALARM, code) for code in sorted(both)), (Kind.ALARM_OVER, int(Alarm.CAMERA_LOST))]
+
+
+def test_two_changes_that_wait_together_are_taken_back_together(window: Window, path: Path) -> None:
+    session = window.session
+    session._on_status(status())
+    session.log_in(QUENTIN)
+    for key, before, after in (("hole_threshold", 0.46, 0.9), ("missing_threshold", 0.34, 0.9)):
+        change(session, Level.QUALITY, {("recipes", "1", "model", key): (before, after)}, REASON)
+    session._on_status(status(alarms=(int(Alarm.SETTINGS_REFUSED),), reloaded_s=time.time() + 1))
+    assert adjustments.read(path) == {}
+
+
+def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(window: Window, frames: dict[str, Image]) -> None:
+    session = window.session
+    session._on_parts([part(nok_inspection(), 0)])
+    session._on_preview(make_preview(0, frames[label_with("OK")["frame"]], None))
+    assert session.last_nok is not None
+    assert session.last_nok.preview is None
+    assert not session.thumbs

@@ -3,7 +3,7 @@
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from PySide6.QtCore import QDateTime, Signal
+from PySide6.QtCore import QDateTime, QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QDateTimeEdit, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from station.archive.reader import Row, Wanted, find
@@ -86,6 +86,14 @@ class SearchFields(QWidget):
             box.addItem(every, None)
             for text, value in values:
                 box.addItem(text, value)
+
+    def clear(self) -> None:
+        """Look for nothing in particular."""
+        self.serial.clear()
+        for box in (self.since, self.verdict, self.kind, self.segment, self.score, self.state):
+            with QSignalBlocker(box):
+                box.setCurrentIndex(0)
+        self._between.hide()
 
     def _on_chosen(self) -> None:
         self._between.setVisible(self.since.currentData() == BETWEEN)

@@ -68,9 +68,9 @@ class Filmstrip(QListWidget):
 
 
 def tile(verdict: str, thumb: QImage | None) -> QPixmap:
-    """Picture with the verdict's symbol in its corner; a plain tile if there is no picture."""
+    """Picture with the verdict's symbol in its corner; a plain tile if there is no picture. Green is for a fresh OK alone."""
     c = theme.colors()
-    color, on = {"OK": (c.good, c.on_color), "NOK": (c.bad, c.on_bad)}.get(verdict, (c.warn, c.on_color))
+    color, on = {"OK": (c.raised, c.text), "NOK": (c.bad, c.on_bad)}.get(verdict, (c.warn, c.on_color))
     pixmap = QPixmap(ICON_PX, ICON_PX)
     pixmap.fill(QColor(c.picture))
     painter = QPainter(pixmap)

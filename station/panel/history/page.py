@@ -15,9 +15,9 @@ from station.panel.card import label
 from station.panel.history.fields import SearchFields
 from station.panel.history.filmstrip import Filmstrip
 from station.panel.history.record_view import RecordView
-from station.panel.kept import defect_map, of_record
 from station.panel.page import Page
 from station.panel.session import FILM, THUMB_PX, Session
+from station.panel.weld.kept import defect_map, of_record
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.recipe import load_inspector
@@ -61,12 +61,14 @@ class HistoryPage(Page):
         top = QHBoxLayout()
         top.addWidget(self.fields, 1)
         top.addWidget(self.gallery, 0, Qt.AlignmentFlag.AlignTop)
-        self._count, self._problem, self._work = label("", "quiet"), label("", "problem", wrap=True), WorkBar()
+        self._count, self._said = label("", "quiet"), label("", "quiet", wrap=True)
+        self._problem, self._work = label("", "problem", wrap=True), WorkBar()
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.film, 1)
         column.addWidget(self._count)
+        column.addWidget(self._said)
         split = QSplitter(Qt.Orientation.Horizontal)
         split.addWidget(left)
         split.addWidget(self.record)
@@ -123,6 +125,13 @@ class HistoryPage(Page):
             self._on_chosen()
         if self.gallery.isChecked():
             self._read_pictures(rows)
+
+    def open_part(self, number: int) -> None:
+        """Choose one of the last parts, whatever was looked for."""
+        self.fields.clear()
+        self.search()
+        if number in self.film.rows:
+            self.film.setCurrentRow(list(self.film.rows).index(number))
 
     def _follow(self) -> None:
         """New parts come by themselves, but not while somebody looks further down."""
@@ -204,7 +213,7 @@ class HistoryPage(Page):
             self._pictures |= found
             self.film.fill(list(self.film.rows.values()), {**self._pictures, **self._session.thumbs}, self._reviews())
         else:
-            self._count.setText(str(found))
+            self._said.setText(str(found))
 
     def _ask_export(self) -> None:
         title = translate("history", "Folder for the crops of reviewed parts")

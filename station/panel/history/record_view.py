@@ -12,10 +12,10 @@ from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, Ring, Verdict
 from station.errors import ImageError, LocateError
 from station.panel.card import Facts, Table, label, titled
-from station.panel.kept import of_record
-from station.panel.live.strip_view import StripView
-from station.panel.live.weld_view import WeldView
-from station.panel.pictures import nok_scores
+from station.panel.weld.kept import of_record
+from station.panel.weld.pictures import nok_scores
+from station.panel.weld.strip_view import StripView
+from station.panel.weld.weld_view import WeldView
 from station.panel.words import data, translate
 from station.records import Record
 

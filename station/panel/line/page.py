@@ -119,6 +119,8 @@ class LinePage(Page):
         words = status.status_words
         for_u32, for_f32 = (words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32"))
         number = struct.unpack(">f", struct.pack(">HH", *for_f32))[0]
+        if self._session.settings.plc.low_word_first:
+            for_u32, for_f32 = for_u32[::-1], for_f32[::-1]
         self._words.setText(
             translate("line", "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:")
             + f" {for_u32[0]:04X} {for_u32[1]:04X} · {for_f32[0]:04X} {for_f32[1]:04X} ({number:.3f}). "

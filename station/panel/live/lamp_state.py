@@ -4,11 +4,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from station.domain import Origin, Purpose, Verdict
-from station.events import PartEvent, StatusEvent
+from station.events import STATUS_LOST_S, PartEvent, StatusEvent
 from station.plc.alarms import Alarm
 from station.plc.registers import Offline, VerdictCode
 
-STATUS_LOST_S = 2.0
 FRESH_S = 3.0
 GONE_S = 10.0
 

@@ -3,28 +3,29 @@
 import time
 
 from PySide6.QtCore import QTimer
-from PySide6.QtGui import QHideEvent, QImage
+from PySide6.QtGui import QHideEvent, QImage, QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
 from station.domain import SEGMENTS, Purpose
 from station.errors import WeldgateError
 from station.events import PartEvent, Preview
 from station.panel.card import Facts, label, titled
-from station.panel.live.clock_face import ClockFace
 from station.panel.live.lamp_state import lamp
 from station.panel.live.score_history import ScoreHistory
-from station.panel.live.strip_view import StripView
 from station.panel.live.verdict_lamp import VerdictLamp
-from station.panel.live.weld_view import WeldView
 from station.panel.page import Page
-from station.panel.pictures import drawn, nok_scores, strip_image
-from station.panel.session import Session
+from station.panel.session import Session, shows
+from station.panel.weld.clock_face import ClockFace
+from station.panel.weld.pictures import drawn, nok_scores, strip_image
+from station.panel.weld.strip_view import StripView
+from station.panel.weld.weld_view import WeldView
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.settings import for_recipe
 from station.users import Level
 
 AGE_MS = 200
+SIDE_PX, SIDE_SHARE = 380, 0.32
 
 
 class LivePage(Page):
@@ -54,6 +55,7 @@ class LivePage(Page):
         """Number of the pinned part, and whether its picture had come."""
         self.scores, self._segment = ScoreHistory(), 0
         self.strip.touched.connect(self._show_scores)
+        self._nok_strip.touched.connect(lambda _: self._open_pinned())
         self.scores.touched.connect(lambda: self._angles.setCurrentWidget(self.clock))
         self.test = QPushButton(translate("live", "Test picture"))
         self.test.setToolTip(translate("live", "Take a picture of what lies there now and judge it; the PLC is told nothing"))
@@ -83,11 +85,11 @@ class LivePage(Page):
         self.age()
 
     def _lay_out(self) -> None:
-        side = QWidget()
-        side.setFixedWidth(380)
+        self._side = side = QWidget()
+        side.setFixedWidth(SIDE_PX)
         column = QVBoxLayout(side)
         column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.lamp, 3)
+        column.addWidget(self.lamp, 4)
         column.addWidget(self.facts)
         self._angles = QStackedWidget()
         for widget in (self.clock, self.scores):
@@ -170,7 +172,7 @@ class LivePage(Page):
         if last is None or (self.hold.isChecked() and self._held is not None):
             return
         self._held = None
-        if preview is not None and preview.inspection_id == last.record.inspection_id:
+        if preview is not None and shows(preview, last):
             if self.hold.isChecked():
                 self._held = preview
             held = "  ·  " + translate("live", "HELD") if self.hold.isChecked() else ""
@@ -200,7 +202,7 @@ class LivePage(Page):
         settings, number = self._session.settings, record.provenance.recipe
 
         def work(_told: Told) -> tuple[int, QImage]:
-            from station.panel.kept import defect_map  # only who asks pays for the network
+            from station.panel.weld.kept import defect_map  # only who asks pays for the network
             from station.recipe import load_inspector
 
             return record.inspection_id, defect_map(load_inspector(for_recipe(settings, number))[0].classifier, folder, record)
@@ -226,6 +228,15 @@ class LivePage(Page):
         parts, name = translate("live", "parts"), translate("live", "segment")
         self.scores.show_scores(scores, [p.seg_nok[segment] for p in seen], f"{name} {segment + 1} · {len(seen)} {parts}")
         self._angles.setCurrentWidget(self.scores)
+
+    def _open_pinned(self) -> None:
+        if self._nok_shown is not None and self._nok_shown[0] > 0:
+            self._session.part_wanted.emit(self._nok_shown[0])
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """The lamp grows with the screen: it is read from afar."""
+        super().resizeEvent(event)
+        self._side.setFixedWidth(max(SIDE_PX, int(self.width() * SIDE_SHARE)))
 
     def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
         """Nobody looks at what is held."""

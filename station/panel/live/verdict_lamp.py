@@ -43,7 +43,7 @@ class VerdictLamp(QWidget):
         height, width = self.height(), self.width()
         font, word = painter.font(), data(self._lamp.word)
         font.setBold(True)
-        for text, top, share, size in ((self._lamp.symbol, 0.02, 0.36, 0.32), (word, 0.37, 0.28, 0.25)):
+        for text, top, share, size in ((self._lamp.symbol, 0.02, 0.34, 0.32), (word, 0.35, 0.32, 0.31)):
             font.setPixelSize(max(12, int(min(height * size, width * 1.15 / max(4, len(text))))))
             painter.setFont(font)
             painter.drawText(QRectF(0, height * top, width, height * share), Qt.AlignmentFlag.AlignCenter, text)
@@ -52,7 +52,7 @@ class VerdictLamp(QWidget):
         painter.setFont(font)
         flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
         detail = ": ".join(text for text in (data(self._lamp.detail) if self._lamp.detail else "", self._lamp.more) if text)
-        painter.drawText(QRectF(10, height * 0.65, width - 20, height * 0.2), int(flags), detail)
+        painter.drawText(QRectF(10, height * 0.67, width - 20, height * 0.2), int(flags), detail)
         painter.drawText(QRectF(10, height * 0.85, width - 20, height * 0.13), Qt.AlignmentFlag.AlignCenter, self._foot)
 
 

@@ -9,11 +9,11 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, 
 from station.imagefile import read_image
 from station.inspection import Inspector
 from station.panel.card import Choice, Table, label, titled
-from station.panel.kept import judged
-from station.panel.live.weld_view import Drawn, WeldView
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.setup.field import NumberField
+from station.panel.weld.kept import judged
+from station.panel.weld.weld_view import Drawn, WeldView
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.recipe import load_inspector

@@ -6,13 +6,13 @@ from station.domain import Ring
 from station.errors import WeldgateError
 from station.events import LookEvent
 from station.panel.card import Facts, label, titled
-from station.panel.live.weld_view import Drawn, WeldView
 from station.panel.page import Page
-from station.panel.pictures import drawn
 from station.panel.session import Session
 from station.panel.setup.change import MIN_REASON, change
 from station.panel.setup.field import NumberField
 from station.panel.statistics.charts import Chart
+from station.panel.weld.pictures import drawn
+from station.panel.weld.weld_view import Drawn, WeldView
 from station.panel.words import data, translate
 from station.requests import Service
 from station.settings import PylonSettings, for_recipe

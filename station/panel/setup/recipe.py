@@ -118,7 +118,7 @@ class RecipePage(Page):
         self._work.done.connect(self._on_done)
         self._work.failed.connect(self.problem.setText)
         session.user_changed.connect(self._on_user)
-        session.settings_changed.connect(self._fill)
+        session.settings_changed.connect(self._on_settings)
         session.change_used.connect(self._on_used)
         session.change_refused.connect(self._on_refused)
 
@@ -127,6 +127,10 @@ class RecipePage(Page):
         if self._in_use is None:
             self._fill()
         super().showEvent(event)
+
+    def _on_settings(self) -> None:
+        if self._in_use is not None:
+            self._fill()
 
     def _fill(self) -> None:
         """The limits in use."""

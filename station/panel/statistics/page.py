@@ -12,10 +12,10 @@ from station.archive.statistics import Summary, summarise
 from station.domain import Verdict
 from station.errors import WeldgateError
 from station.panel.card import Choice, Table, label, titled
-from station.panel.live.clock_face import ClockFace
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.statistics.charts import Chart
+from station.panel.weld.clock_face import ClockFace
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.records import Record

@@ -10,8 +10,8 @@ from station.classify.onnx import Classifier
 from station.domain import STRIP_COLUMNS, Image, Inspection
 from station.errors import ImageError
 from station.imagefile import read_image
-from station.panel.live.weld_view import Drawn
-from station.panel.pictures import strip_image
+from station.panel.weld.pictures import strip_image
+from station.panel.weld.weld_view import Drawn
 from station.preview import make_preview
 from station.records import Record
 from station.vision.unwrap import segments, unwrap

@@ -3,7 +3,7 @@
 from PySide6.QtGui import QImage
 
 from station.events import PartEvent, Preview
-from station.panel.live.weld_view import Drawn
+from station.panel.weld.weld_view import Drawn
 from station.records import Record
 
 
