@@ -21,7 +21,7 @@ class AlarmLog:
     """Hears of all alarms that last, as often as one likes, and of each that passes."""
 
     def __init__(self, folder: Path) -> None:
-        """What lasted when the station went down lasts until it is seen to be over. Raises RecordError."""
+        """What lasted when the station went down lasts until it is seen to be over."""
         self._folder = folder
         self._last = _open(folder)
         self._queue: queue.Queue[tuple[Kind, int, str] | None] = queue.Queue(MAX_WAITING)
@@ -65,8 +65,13 @@ class AlarmLog:
 
 
 def _open(folder: Path) -> frozenset[int]:
-    """Codes of lasting alarms that the journal tells of and that are not over in it."""
+    """Codes of lasting alarms that the journal tells of and that are not over in it; none, and said, if it cannot be read."""
     found: dict[int, bool] = {}
-    for entry in entries(folder, (Kind.ALARM, Kind.ALARM_OVER), limit=LOOKED_AT):
+    try:
+        told = entries(folder, (Kind.ALARM, Kind.ALARM_OVER), limit=LOOKED_AT)
+    except RecordError as error:  # parts are judged all the same
+        log.error("%s", error)
+        return frozenset()
+    for entry in told:
         found.setdefault(int(entry.subject.removeprefix("16#"), 16), entry.kind is Kind.ALARM)
     return frozenset(code for code, on in found.items() if on and code in list(Alarm))

@@ -220,3 +220,10 @@ def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(window: Wind
     assert session.last_nok is not None
     assert session.last_nok.preview is None
     assert not session.thumbs
+
+
+def test_an_unreadable_journal_stops_no_engine(tmp_path: Path) -> None:
+    (tmp_path / "journal.sqlite").write_bytes(b"not a database, " * 100)
+    log = AlarmLog(tmp_path)
+    log.lasting({int(Alarm.PLC_SILENT)})
+    log.close()
