@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from station.adjustments import laid_over, path_of
 from station.errors import SettingsError
@@ -35,8 +36,11 @@ def load(path: Path) -> Settings:
 
 
 def _first(error: ValidationError) -> str:
-    problems = [f"{'.'.join(str(p) for p in e['loc'] if p not in ('pylon', 'replay'))}: {e['msg']}" for e in error.errors()]
-    return "; ".join(problems)
+    def told(e: ErrorDetails) -> str:
+        place = ".".join(str(p) for p in e["loc"] if p not in ("pylon", "replay"))
+        return f"{place}: {e['msg'].removeprefix('Value error, ')}"
+
+    return "; ".join(map(told, error.errors()))
 
 
 def _under(folder: Path, values: dict[str, Any]) -> dict[str, Path]:

@@ -28,6 +28,7 @@ def test_the_example_loads_and_its_paths_count_from_its_folder() -> None:
         (GOOD + "[plc]\nport = 70000\n", "plc.port"),
         (GOOD + "[model]\nhole_threshold = 1.5\n", "hole_threshold"),
         (GOOD + '[channel]\nhost = "nowhere"\n', "channel.host"),
+        (GOOD + '[channel]\nhost = "192.168.1.5"\n', "channel.host: must be an address of this machine"),
     ],
 )
 def test_mistakes_are_named_with_file_and_key(text: str, part: str, tmp_path: Path) -> None:
