@@ -68,10 +68,9 @@ def _open(folder: Path) -> frozenset[int]:
     """Codes of lasting alarms that the journal tells of and that are not over in it; none, and said, if it cannot be read."""
     found: dict[int, bool] = {}
     try:
-        told = entries(folder, (Kind.ALARM, Kind.ALARM_OVER), limit=LOOKED_AT)
-    except RecordError as error:  # parts are judged all the same
-        log.error("%s", error)
+        for entry in entries(folder, (Kind.ALARM, Kind.ALARM_OVER), limit=LOOKED_AT):
+            found.setdefault(int(entry.subject.removeprefix("16#"), 16), entry.kind is Kind.ALARM)
+    except (RecordError, ValueError) as error:  # parts are judged all the same
+        log.error("alarms of the run before: %s", error)
         return frozenset()
-    for entry in told:
-        found.setdefault(int(entry.subject.removeprefix("16#"), 16), entry.kind is Kind.ALARM)
     return frozenset(code for code, on in found.items() if on and code in list(Alarm))

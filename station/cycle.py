@@ -74,8 +74,9 @@ class Cycle:
                 self._tell_status()
                 request = self._line.next_request(IDLE_S)
                 if isinstance(request, Trigger):
-                    if not self._guarded(partial(self._part, request), f"part of trigger {request.trigger_id} was not answered"):
-                        self._unanswered(request)
+                    what = f"part of trigger {request.trigger_id} was not answered"
+                    if not self._guarded(partial(self._part, request), what) and self._line.in_work(request):
+                        self._guarded(partial(self._unanswered, request), what)
                 elif isinstance(request, Command):
                     self._line.command_done(request, self._load_recipe(request))
                 elif not self._attend():
@@ -207,7 +208,7 @@ class Cycle:
     def _unanswered(self, trigger: Trigger) -> None:
         """No old verdict stays on the screen."""
         self._alarm_log.passing(ERROR_DEADLINE, f"trigger {trigger.trigger_id}, {trigger.serial}")
-        part = Part(trigger.serial, trigger.trigger_id, self._origin)
+        part = Part(trigger.serial, trigger.trigger_id, self._origin, Purpose.GOLDEN if trigger.golden else Purpose.PART)
         record = unkept(Inspection.error(Reason.INTERNAL), part, self._loaded.provenance)
         self._tell(None, PartEvent(time.monotonic(), record, (), False, None, VerdictCode.ERROR, 0.0, 0.0))
 

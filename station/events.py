@@ -32,14 +32,14 @@ class Counts:
 
 @dataclass(frozen=True, slots=True)
 class StatusEvent:
-    """How the station stands; several a second. Times are monotonic seconds, the same clock for all processes of the machine."""
+    """How the station stands; several a second."""
 
     at_s: float
-    """When it was sent."""
+    """Monotonic time at which it was sent: one clock for all processes of the machine."""
     started_s: float
-    """When the engine started."""
+    """Monotonic time of the engine's start."""
     reloaded_s: float
-    """`asked_s` of the last request to read the settings again that was dealt with, or 0."""
+    """Epoch seconds: `asked_s` of the last request to read the settings again that was dealt with, or 0."""
     camera_there: bool
     camera_message: str
     """Why the camera is not there, or empty."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from station.camera.port import Camera
 from station.errors import SettingsError
 from station.recipe import Loaded, prepare
-from station.settings import PylonSettings, Settings, for_recipe
+from station.settings import PylonSettings, Section, Settings, for_recipe
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Released:
             raise SettingsError("another camera cannot take over while the station runs; start it again")
         known = {1, *self._settings.recipes}
         for other in sorted({1, *new.recipes} - {number}):
-            if other not in known or for_recipe(new, other) != for_recipe(self._settings, other):
+            if other not in known or _judging(new, other) != _judging(self._settings, other):
                 prepare(new, other)  # or the station would not start next time, or refuse the recipe when the PLC wants it
         loaded = prepare(new, number)
         if new.camera != self._settings.camera:
@@ -47,6 +47,11 @@ class Released:
     def accept(self, change: Change) -> None:
         """From now on."""
         self._settings = change.settings
+
+
+def _judging(settings: Settings, number: int) -> tuple[Section, ...]:
+    chosen = for_recipe(settings, number)
+    return chosen.weld, chosen.quality, chosen.model
 
 
 def _which(settings: Settings) -> tuple[str, ...]:

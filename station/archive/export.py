@@ -136,11 +136,14 @@ def _reviewed(entries: list[Listed], folder: Path, target: Path, going: Callable
     def as_seen(record: Record) -> Kinds:
         return {**known[record.inspection_id].agreed_marks}
 
+    missed = []
     for entry in said(Opinion.MISSED):
-        if not known[entry.row.inspection_id].agreed_marks:
+        if known[entry.row.inspection_id].agreed_marks:
+            missed.append(entry)
+        else:
             yield entry.path, "a defect was missed: the two do not see the same kind in any segment, its crops are left out"
-    for opinion, kinds in ((Opinion.RIGHT, _as_judged), (Opinion.FALSE_CALL, _all_ok), (Opinion.MISSED, as_seen)):
-        yield from _dataset(said(opinion), folder, target, going, kinds)
+    for those, kinds in ((said(Opinion.RIGHT), _as_judged), (said(Opinion.FALSE_CALL), _all_ok), (missed, as_seen)):
+        yield from _dataset(those, folder, target, going, kinds)
 
 
 def _dataset(

@@ -153,21 +153,20 @@ class Session(QObject):
         self.change = Change(undo, now_s, now_s + AGAIN_S)
         return self.ask(Reload(now_s))
 
-    def _look_at_change(self, event: StatusEvent, restarted: bool) -> None:
-        """A change is in use once the engine says that it has read the settings since, or has started since."""
+    def _look_at_change(self, event: StatusEvent) -> None:
+        """A change is in use once the engine says that it has read the settings since."""
         if (change := self.change) is None:
             return
-        if restarted or event.reloaded_s >= change.asked_s:
-            self.change = None
-            if change.undo is None:
-                return
-            if Alarm.SETTINGS_REFUSED not in event.alarms:
-                self.change_used.emit()
+        if event.reloaded_s >= change.asked_s:
+            if change.undo is None or Alarm.SETTINGS_REFUSED not in event.alarms:
+                self.change = None
+                if change.undo is not None:
+                    self.change_used.emit()
                 return
             try:
                 change.undo()
             except WeldgateError:
-                return  # the alarm stays, and with it the reason in the engine's log
+                return  # perhaps another window writes: again with the next status
             self._ask_to_reload(None)
             self.change_refused.emit()
         elif time.time() >= change.again_s and event.offline is not Offline.ATTENDED:
@@ -227,10 +226,9 @@ class Session(QObject):
 
     def _on_status(self, event: StatusEvent) -> None:
         before, self.status = self.status, event
-        restarted = before is not None and event.started_s != before.started_s
         if before is not None and event.config_crc != before.config_crc:
             self._read_settings()
-        self._look_at_change(event, restarted)
+        self._look_at_change(event)
         self.status_changed.emit()
 
     def _read_settings(self) -> None:

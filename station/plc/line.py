@@ -273,7 +273,8 @@ class ModbusLine:
                 self._counts[shown] += 1
 
     def _values(self, now_s: float) -> dict[str, Value]:
-        counts = (self._counts[VerdictCode.OK], self._counts[VerdictCode.NOK], self._counts[VerdictCode.ERROR])
+        now = self._counts  # set back from another thread
+        counts = (now[VerdictCode.OK], now[VerdictCode.NOK], now[VerdictCode.ERROR])
         return status_window.values(self._state, self._health, now_s, counts)
 
     def _link_lost(self, error: LineError, now_s: float) -> None:

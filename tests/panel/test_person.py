@@ -148,6 +148,7 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     crc = session.status.config_crc if session.status else 0
     qtbot.mouseClick(recipe.save, LEFT)
     qtbot.waitUntil(lambda: session.status is not None and session.status.config_crc != crc, timeout=20_000)
+    qtbot.waitUntil(lambda: recipe.said.text() == "saved and in use", timeout=5000)
     assert adjustments.read(path) == {"recipes": {"1": {"model": {"hole_min_mm": 1.5}}}}
     (change,) = entries(folder, (Kind.SETTING,))
     assert (change.who, change.subject, change.after) == ("Quentin", "recipes.1.model.hole_min_mm", "1.5")
@@ -319,6 +320,7 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
         qtbot.mouseClick(page.record.strip, LEFT, pos=QPoint(page.record.strip.width() // 2, 20))
     qtbot.mouseClick(missed, LEFT)
     assert reviews(window.session.folder)[ok].marks == {"Ada": {11: Reason.MISSING_WELD}}
+    assert not missed.isEnabled(), "the marks are hers, not those of the next"
     fields.since.setCurrentText("from … to …")
     assert fields.begin.isVisible()
     assert len(page.film.rows) == 4

@@ -149,6 +149,8 @@ def test_a_change_is_asked_for_until_the_station_has_taken_it(window: Window, pa
     change(session, Level.QUALITY, {place: (0.46, 0.9)}, REASON)
     session._on_status(status(reloaded_s=time.time() - 60))
     assert heard == [], "the station has not yet read them"
+    session._on_status(status(started_s=1.0))
+    assert heard == [], "an engine may have read them before they were changed"
     session._on_status(status(reloaded_s=time.time() + 1))
     assert heard == ["used"]
     change(session, Level.QUALITY, {place: (0.9, 0.2)}, REASON)
@@ -203,6 +205,19 @@ def test_an_alarm_of_the_run_before_is_over_when_it_is_not_there_any_more(tmp_pa
     assert kinds == [*((Kind.ALARM, code) for code in sorted(both)), (Kind.ALARM_OVER, int(Alarm.CAMERA_LOST))]
 
 
+def test_what_cannot_be_taken_back_just_now_is_taken_back_later(window: Window, path: Path) -> None:
+    session = window.session
+    session._on_status(status())
+    session.log_in(QUENTIN)
+    change(session, Level.QUALITY, {("recipes", "1", "model", "hole_threshold"): (0.46, 0.9)}, REASON)
+    refused = status(alarms=(int(Alarm.SETTINGS_REFUSED),), reloaded_s=time.time() + 1)
+    with adjustments.editing(path):
+        session._on_status(refused)
+    assert adjustments.read(path) != {}
+    session._on_status(refused)
+    assert adjustments.read(path) == {}
+
+
 def test_two_changes_that_wait_together_are_taken_back_together(window: Window, path: Path) -> None:
     session = window.session
     session._on_status(status())
@@ -222,8 +237,9 @@ def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(window: Wind
     assert not session.thumbs
 
 
-def test_an_unreadable_journal_stops_no_engine(tmp_path: Path) -> None:
+def test_an_unreadable_journal_is_told_and_stops_no_engine(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "journal.sqlite").write_bytes(b"not a database, " * 100)
     log = AlarmLog(tmp_path)
     log.lasting({int(Alarm.PLC_SILENT)})
     log.close()
+    assert "journal.sqlite" in caplog.text

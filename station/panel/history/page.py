@@ -7,19 +7,19 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from station.archive.export import export
-from station.archive.reader import Row, Wanted, read_record, read_records
+from station.archive.reader import Row, Wanted, find, read_records
 from station.archive.review import Opinion, Review, State, give, possible, reviews
 from station.domain import Verdict
-from station.errors import ImageError, LocateError, RecordError, WeldgateError
+from station.errors import RecordError, WeldgateError
 from station.panel.card import label
 from station.panel.history.fields import SearchFields
 from station.panel.history.filmstrip import Filmstrip
 from station.panel.history.record_view import RecordView
 from station.panel.page import Page
-from station.panel.session import FILM, THUMB_PX, Session
-from station.panel.weld.kept import defect_map, of_record
+from station.panel.session import FILM, Session
+from station.panel.weld.kept import defect_map, small_pictures
 from station.panel.words import data, translate
-from station.panel.work import Told, WorkBar
+from station.panel.work import Told, WorkBar, ended, exists
 from station.recipe import load_inspector
 from station.settings import for_recipe
 from station.users import Level
@@ -48,6 +48,7 @@ class HistoryPage(Page):
         self._work.done.connect(self._on_pictures)
         self._work.failed.connect(lambda why: self._problem.setText(data(why)))
         session.user_changed.connect(self.comment.clear)
+        session.user_changed.connect(self.record.clear_marks)
         session.user_changed.connect(self._on_user)
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._follow)
@@ -127,11 +128,13 @@ class HistoryPage(Page):
             self._read_pictures(rows)
 
     def open_part(self, number: int) -> None:
-        """Choose one of the last parts, whatever was looked for."""
+        """Choose a part, whatever was looked for."""
         self.fields.clear()
         self.search()
-        if number in self.film.rows:
-            self.film.setCurrentRow(list(self.film.rows).index(number))
+        if number not in self.film.rows:
+            older = find(self._session.folder, Wanted(number=number))
+            self.film.fill([*older, *self.film.rows.values()], self._session.thumbs, self._reviews())
+        self.film.setCurrentRow(list(self.film.rows).index(number) if number in self.film.rows else -1)
 
     def _follow(self) -> None:
         """New parts come by themselves, but not while somebody looks further down."""
@@ -191,6 +194,7 @@ class HistoryPage(Page):
             self._problem.setText(data(str(error)))
             return
         self.comment.clear()
+        self.record.clear_marks()
         self.search()
         self._on_user()
 
@@ -202,7 +206,7 @@ class HistoryPage(Page):
         folder, known = self._session.folder, {**self._pictures, **self._session.thumbs}
         missing = [r for r in rows[:GALLERY] if r.inspection_id not in known]
         if missing and not self._work.busy:
-            self._work.start(translate("history", "pictures"), lambda told: _thumbs(folder, missing, told))
+            self._work.start(translate("history", "pictures"), lambda told: small_pictures(folder, missing, told))
 
     def _on_pictures(self, found: object) -> None:
         if isinstance(found, tuple):
@@ -225,8 +229,11 @@ class HistoryPage(Page):
         title, only = translate("history", "the parts that were found, as CSV"), QFileDialog.Option.ReadOnly
         name, _ = QFileDialog.getSaveFileName(self, title, "parts.csv", "CSV (*.csv)", options=only)
         if name and self._session.may(Level.OPERATOR):
-            path = Path(name)
-            self.list_to(path if path.suffix.lower() == ".csv" else path.with_name(path.name + ".csv"))
+            path = ended(name, ".csv")
+            if path is None:
+                self._problem.setText(exists())
+            else:
+                self.list_to(path)
 
     def list_to(self, target: Path) -> None:
         """The parts in the list, one row each."""
@@ -238,8 +245,10 @@ class HistoryPage(Page):
                 entries += list(read_records(folder, Wanted(number=number)))
                 if not told(count, len(numbers)):
                     return ""
-            target.unlink(missing_ok=True)  # the dialog has asked
-            problems = list(export(entries, folder, target, "csv"))
+            part = target.with_name(target.name + ".new")
+            part.unlink(missing_ok=True)
+            problems = list(export(entries, folder, part, "csv"))
+            part.replace(target)  # the dialog has asked
             return f"{target}: {len(entries) - len(problems)}"
 
         self._work.start(translate("history", "table"), work)
@@ -277,18 +286,3 @@ class HistoryPage(Page):
         """Nothing is left running."""
         self._timer.stop()
         self._work.close_work()
-
-
-def _thumbs(folder: Path, rows: list[Row], told: Told) -> dict[int, QImage]:
-    found: dict[int, QImage] = {}
-    for count, row in enumerate(rows):
-        if not told(count, len(rows)):
-            break
-        record, _ = read_record(folder, row)
-        if record is not None:
-            try:
-                image = of_record(folder, record)[0].image
-            except (ImageError, LocateError):
-                continue
-            found[row.inspection_id] = image.scaled(THUMB_PX, THUMB_PX, Qt.AspectRatioMode.KeepAspectRatio)
-    return found

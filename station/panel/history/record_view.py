@@ -1,5 +1,6 @@
 """One record with everything that led to its verdict."""
 
+from math import ceil
 from pathlib import Path
 
 from PySide6.QtCore import Signal
@@ -86,8 +87,14 @@ class RecordView(QWidget):
         self.problem.setText(why)
         self.weld.show_weld(None, translate("history", "the record cannot be read") if why else translate("history", "no part"))
         self.strip.show_strip(None, (), ())
+        self.strip.show_marks({})
         self.findings.fill([])
         self.facts.set(**dict.fromkeys(self.facts.values, "–"))
+
+    def clear_marks(self) -> None:
+        """They are one person's."""
+        self.marks = {}
+        self.strip.show_marks({})
 
     def mark(self, index: int) -> None:
         """A cell of an OK part was touched: hole, missing weld, nothing, in turns."""
@@ -146,9 +153,7 @@ class RecordView(QWidget):
             shown=shown[row.shown_to_plc],
             quality="–" if q is None else f"{q.mean_dn:.0f} · {q.sharpness:.3f} · {q.saturated_share:.1%}",
             novelty="–" if inspection.novelty is None else f"{inspection.novelty:.2f}",
-            ring="–"
-            if ring is None
-            else f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f} · {ring.residual_px:.2f}",
+            ring="–" if ring is None else _ring(ring),
             steps=" · ".join("–" if ms is None else f"{ms:.0f}" for ms in steps),
             limits="\n".join(_limits(p.thresholds)),
             model=f"{p.model_version} · {p.recipe}",
@@ -159,8 +164,8 @@ class RecordView(QWidget):
 
 def _segments(finding: Finding) -> list[int]:
     """Indices of the segments that it lies in."""
-    first, last = int(finding.start_deg // SEGMENT_DEG), int(finding.end_deg // SEGMENT_DEG)
-    return [index % SEGMENTS for index in range(first, last + 1)]
+    first, last = int(finding.start_deg // SEGMENT_DEG), ceil(finding.end_deg / SEGMENT_DEG) - 1
+    return [index % SEGMENTS for index in range(first, max(first, last) + 1)]
 
 
 def _ring(ring: Ring) -> str:

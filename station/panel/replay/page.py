@@ -143,9 +143,13 @@ class ReplayPage(Page):
         def work(told: Told) -> Done | None:
             return _judged(for_recipe(settings, number), path, count, scale, told)
 
-        self.done = None
         self._problem.setText("")
-        self._work.start(translate("replay", "images are judged"), work)
+        if self._work.start(translate("replay", "images are judged"), work):
+            self.done = None
+            self.said.setText("")
+            self.weld.show_weld(None)
+            self._fill()
+            self._on_user()
 
     def _on_done(self, found: object) -> None:
         if isinstance(found, Done):

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Row, Wanted, find
 from station.domain import Purpose
-from station.errors import RecordError
+from station.errors import RecordError, WeldgateError
 from station.panel.card import Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
@@ -103,7 +103,13 @@ class MastersPage(Page):
         row, masters = self.masters.currentRow(), list(self._session.settings.golden.masters)
         if not 0 <= row < len(masters):
             self.problem.setText(translate("masters", "choose a master first"))
-        elif not self._session.test_picture(masters[row]):
+            return
+        try:
+            told = self._session.test_picture(masters[row])
+        except WeldgateError as error:
+            self.problem.setText(data(str(error)))
+            return
+        if not told:
             self.problem.setText(translate("masters", "no engine is there"))
 
     def close_page(self) -> None:

@@ -54,6 +54,7 @@ class PeoplePage(Page):
         self.name.textChanged.connect(self._unsure)
         self.table.currentCellChanged.connect(self._on_chosen)
         session.user_changed.connect(self.pin.clear)
+        session.user_changed.connect(self._unsure)
         session.user_changed.connect(self.refresh)
         self.refresh()
 

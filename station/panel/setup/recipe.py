@@ -154,6 +154,7 @@ class RecipePage(Page):
 
     def _on_user(self) -> None:
         """What one has typed and seen is not for the next."""
+        self._work.cancel()
         self.reason.clear()
         self._forget()
         self._look()
@@ -244,6 +245,7 @@ class RecipePage(Page):
         self.reason.clear()
         self.problem.setText("" if told else translate("recipe", "saved; no engine is there, it is used at the next start"))
         self._fill()
+        self._forget()
         self.said.setText(translate("recipe", "saved; the station is about to use it") if told else "")
 
     def _on_used(self) -> None:

@@ -17,7 +17,7 @@ from station.panel.session import Session
 from station.panel.statistics.charts import Chart
 from station.panel.weld.clock_face import ClockFace
 from station.panel.words import data, translate
-from station.panel.work import Told, WorkBar
+from station.panel.work import Told, WorkBar, ended, exists
 from station.records import Record
 from station.report.page import report
 from station.settings import for_recipe
@@ -150,8 +150,11 @@ class StatisticsPage(Page):
         title, only = translate("statistics", "Report"), QFileDialog.Option.ReadOnly
         name, _ = QFileDialog.getSaveFileName(self, title, "report.html", "HTML (*.html)", options=only)
         if name and self._session.may(Level.OPERATOR):  # or their time was over meanwhile
-            path = Path(name)
-            self.write_report(path if path.suffix.lower() in (".html", ".htm") else path.with_name(path.name + ".html"))
+            path = ended(name, ".html")
+            if path is None:
+                self._problem.setText(exists())
+            else:
+                self.write_report(path)
 
     def write_report(self, target: Path) -> None:
         """The chosen parts as one HTML file."""

@@ -1,15 +1,19 @@
 """Pictures of kept records."""
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 
 from station.archive.decided import segment_kinds
+from station.archive.reader import Row, read_record
 from station.classify.onnx import Classifier
 from station.domain import STRIP_COLUMNS, Image, Inspection
-from station.errors import ImageError
+from station.errors import ImageError, LocateError
 from station.imagefile import read_image
+from station.panel.session import THUMB_PX
 from station.panel.weld.pictures import strip_image
 from station.panel.weld.weld_view import Drawn
 from station.preview import make_preview
@@ -57,3 +61,19 @@ def defect_map(classifier: Classifier, folder: Path, record: Record) -> QImage:
     height, width = layer.shape[:2]
     image = QImage(layer.data, width, height, width * 4, QImage.Format.Format_ARGB32)
     return image.scaledToWidth(STRIP_COLUMNS // 2)
+
+
+def small_pictures(folder: Path, rows: Sequence[Row], told: Callable[[int, int], bool]) -> dict[int, QImage]:
+    """Of the rows whose pictures can be read, by number; until `told`, called with how many of how many are done, says no."""
+    found: dict[int, QImage] = {}
+    for count, row in enumerate(rows):
+        if not told(count, len(rows)):
+            break
+        record, _ = read_record(folder, row)
+        if record is not None:
+            try:
+                image = of_record(folder, record)[0].image
+            except (ImageError, LocateError):
+                continue
+            found[row.inspection_id] = image.scaled(THUMB_PX, THUMB_PX, Qt.AspectRatioMode.KeepAspectRatio)
+    return found
