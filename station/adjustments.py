@@ -1,12 +1,12 @@
 """What was changed at the station: a small JSON file beside the settings file, laid over it when it is read."""
 
 import json
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, TypeGuard
 
+from station.durable import sync_folder, write_durable
 from station.errors import SettingsError
 from station.filelock import FileLock
 
@@ -99,16 +99,8 @@ def put(changes: Mapping[str, Any], place: Sequence[str], value: object) -> dict
 def write(settings: Path, changes: dict[str, Any]) -> None:
     """Replace all changes at once, durably. Raises SettingsError."""
     path = path_of(settings)
-    part = path.with_name(path.name + ".new")
     try:
-        with part.open("w") as file:
-            file.write(json.dumps(changes, indent=1, sort_keys=True))
-            file.flush()
-            os.fsync(file.fileno())
-        part.replace(path)
-        if os.name == "posix":
-            folder = os.open(path.parent, os.O_RDONLY)
-            os.fsync(folder)
-            os.close(folder)
+        write_durable(path, json.dumps(changes, indent=1, sort_keys=True).encode())
+        sync_folder(path.parent)
     except OSError as error:
         raise SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from station.archive.files import sync_folder
 from station.archive.schema import NAME, START
+from station.durable import sync_folder
 from station.errors import RecordError
 from station.settings import KeepSettings
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from station.archive.files import sync_folder, write_durable
 from station.archive.room import Disk, Room
 from station.archive.schema import SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
+from station.durable import sync_folder, write_durable
 from station.errors import ImageError, RecordError
 from station.filelock import FileLock
 from station.imagefile import encode_png
