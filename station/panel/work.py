@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Signal
@@ -99,17 +98,3 @@ class WorkBar(QWidget):
             self.failed.emit(problem)
         elif not cancelled:
             self.done.emit(result)
-
-
-def ended(name: str, ending: str) -> Path | None:
-    """A file's name from a dialog with its ending; None if such a file exists and the dialog, which saw no ending, did not ask."""
-    path = Path(name)
-    if path.suffix.lower() == ending:
-        return path
-    path = path.with_name(path.name + ending)
-    return None if path.exists() else path
-
-
-def exists() -> str:
-    """What is said then."""
-    return translate("work", "such a file exists already: choose another name")

@@ -67,7 +67,7 @@ class AlarmsPage(Page):
             return
         over: dict[str, str] = {}
         seen = {e.subject: e.who for e in told if e.kind is Kind.ALARM_SEEN}
-        rows, numbers = [], []
+        rows, numbers, self._actions = [], [], {}
         for entry in told:  # the newest first
             if entry.kind is Kind.ALARM_OVER:
                 over[entry.subject] = entry.at

@@ -29,6 +29,7 @@ class SearchFields(QWidget):
         self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
         self.serial.setMinimumWidth(120)
         self.since, self.verdict, self.kind, self.segment, self.score, self.state = (Choice() for _ in range(6))
+        self._boxes = (self.since, self.verdict, self.kind, self.segment, self.score, self.state)
         self._fill()
         self.look_up = QPushButton(translate("history", "Search"))
         now = QDateTime.currentDateTime()
@@ -46,7 +47,7 @@ class SearchFields(QWidget):
         self._between.hide()
         top = QHBoxLayout()
         top.addWidget(self.serial, 1)
-        for box in (self.since, self.verdict, self.kind, self.segment, self.score, self.state):
+        for box in self._boxes:
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
             box.setMinimumContentsLength(7 if box is self.state else 6)
             box.currentIndexChanged.connect(self._on_chosen)
@@ -90,7 +91,7 @@ class SearchFields(QWidget):
     def clear(self) -> None:
         """Look for nothing in particular."""
         self.serial.clear()
-        for box in (self.since, self.verdict, self.kind, self.segment, self.score, self.state):
+        for box in self._boxes:
             with QSignalBlocker(box):
                 box.setCurrentIndex(0)
         self._between.hide()

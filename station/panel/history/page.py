@@ -1,17 +1,19 @@
 """Past parts: the last 300 or what is searched for, one of them opened, reviewed, exported."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from station.archive.export import export
-from station.archive.reader import Row, Wanted, find, read_records
+from station.archive.reader import Listed, Row, Wanted, find, read_records
 from station.archive.review import Opinion, Review, State, give, possible, reviews
 from station.domain import Verdict
 from station.errors import RecordError, WeldgateError
 from station.panel.card import label
+from station.panel.dialogs import ask_file, ask_folder
 from station.panel.history.fields import SearchFields
 from station.panel.history.filmstrip import Filmstrip
 from station.panel.history.record_view import RecordView
@@ -19,9 +21,7 @@ from station.panel.page import Page
 from station.panel.session import FILM, Session
 from station.panel.weld.kept import defect_map, small_pictures
 from station.panel.words import data, translate
-from station.panel.work import Told, WorkBar, ended, exists
-from station.recipe import load_inspector
-from station.settings import for_recipe
+from station.panel.work import Told, WorkBar
 from station.users import Level
 
 REFRESH_MS = 1000
@@ -40,9 +40,11 @@ class HistoryPage(Page):
         """Number of the newest part at the last search."""
         self._pictures: dict[int, QImage] = {}
         """Read for the gallery."""
+        self._review: Review | None = None
+        """Of the chosen part."""
         self._lay_out()
         self.film.currentItemChanged.connect(self._on_chosen)
-        self.record.marked.connect(self._on_user)
+        self.record.marked.connect(self._look)
         self.gallery.toggled.connect(self._on_gallery)
         self.fields.asked.connect(self.search)
         self._work.done.connect(self._on_pictures)
@@ -77,7 +79,7 @@ class HistoryPage(Page):
         split.setStretchFactor(1, 1)
         self.comment = QLineEdit()
         self.comment.setPlaceholderText(translate("history", "comment"))
-        self._review = label("", "fact")
+        self._reviewed = label("", "fact")
         self.opinions = {
             Opinion.RIGHT: QPushButton(translate("history", "Verdict is right")),
             Opinion.FALSE_CALL: QPushButton(translate("history", "False call")),
@@ -100,7 +102,7 @@ class HistoryPage(Page):
         rows = QVBoxLayout(self)
         rows.addLayout(top)
         rows.addWidget(split, 1)
-        rows.addWidget(self._review)
+        rows.addWidget(self._reviewed)
         rows.addLayout(bottom)
         rows.addWidget(self._work)
         rows.addWidget(self._problem)
@@ -153,7 +155,13 @@ class HistoryPage(Page):
         self._on_user()
 
     def _on_user(self) -> None:
-        number, user = self.film.chosen(), self._session.user
+        """Who may say what of the chosen part, and what was said."""
+        number = self.film.chosen()
+        self._review = None if number is None else self._reviews().get(number)
+        self._look()
+
+    def _look(self) -> None:
+        number, user, review = self.film.chosen(), self._session.user, self._review
         row = None if number is None else self.film.rows.get(number)
         for opinion, button in self.opinions.items():
             where = opinion is not Opinion.MISSED or bool(self.record.marks)
@@ -162,15 +170,14 @@ class HistoryPage(Page):
             button.setEnabled(user is not None)
         self.show_map.setEnabled(row is not None and self.record.strip_shown)
         if row is None:
-            self._review.setText("")
+            self._reviewed.setText("")
             return
-        review = self._reviews().get(row.inspection_id)
         state = data(review.state if review else State.NONE)
         said = ", ".join(f"{who}: {data(opinion)}" for who, opinion in review.opinions.items()) if review else ""
         missed = user is not None and row.verdict == Verdict.OK and not self.record.marks
         hint = translate("history", "log in to review") if user is None else ""
         hint = translate("history", "touch the cells in which a defect was missed") if missed else hint
-        self._review.setText(" · ".join(text for text in (state, said, hint) if text))
+        self._reviewed.setText(" · ".join(text for text in (state, said, hint) if text))
 
     def _reviews(self) -> dict[int, Review]:
         """All reviews; if they cannot be read, that is said."""
@@ -220,31 +227,23 @@ class HistoryPage(Page):
             self._said.setText(str(found))
 
     def _ask_export(self) -> None:
-        title = translate("history", "Folder for the crops of reviewed parts")
-        name = QFileDialog.getExistingDirectory(self, title, options=QFileDialog.Option.ReadOnly)
-        if name and self._session.may(Level.OPERATOR):  # or their time was over meanwhile
-            self.export_to(Path(name) / "reviewed")
+        folder = ask_folder(self, self._session, translate("history", "Folder for the crops of reviewed parts"))
+        if folder is not None:
+            self.export_to(folder / "reviewed")
 
     def _ask_list(self) -> None:
-        title, only = translate("history", "the parts that were found, as CSV"), QFileDialog.Option.ReadOnly
-        name, _ = QFileDialog.getSaveFileName(self, title, "parts.csv", "CSV (*.csv)", options=only)
-        if name and self._session.may(Level.OPERATOR):
-            path = ended(name, ".csv")
-            if path is None:
-                self._problem.setText(exists())
-            else:
-                self.list_to(path)
+        path = ask_file(self, self._session, translate("history", "the parts that were found, as CSV"), "parts.csv")
+        if path is not None:
+            self.list_to(path)
 
     def list_to(self, target: Path) -> None:
         """The parts in the list, one row each."""
         folder, numbers = self._session.folder, list(self.film.rows)
 
         def work(told: Told) -> str:
-            entries = []
-            for count, number in enumerate(numbers):
-                entries += list(read_records(folder, Wanted(number=number)))
-                if not told(count, len(numbers)):
-                    return ""
+            entries = _read(folder, numbers, told)
+            if entries is None:
+                return ""
             part = target.with_name(target.name + ".new")
             part.unlink(missing_ok=True)
             problems = list(export(entries, folder, part, "csv"))
@@ -254,27 +253,18 @@ class HistoryPage(Page):
         self._work.start(translate("history", "table"), work)
 
     def _ask_map(self) -> None:
-        record, folder, settings = self.record.record, self._session.folder, self._session.settings
-        if record is None:
-            return
-
-        def work(_told: Told) -> tuple[int, QImage]:
-            inspector, _ = load_inspector(for_recipe(settings, record.provenance.recipe))
-            return record.inspection_id, defect_map(inspector.classifier, folder, record)
-
-        self._work.start(translate("history", "defect map"), work)
+        record, settings = self.record.record, self._session.settings
+        if record is not None:
+            self._work.start(translate("history", "defect map"), lambda _: defect_map(settings, record))
 
     def export_to(self, target: Path) -> None:
         """Crops of the parts that two people agree on."""
         folder = self._session.folder
 
         def work(told: Told) -> str:
-            entries = []
-            agreed = [number for number, review in reviews(folder).items() if review.agreed is not None]
-            for count, number in enumerate(agreed):
-                entries += list(read_records(folder, Wanted(number=number)))
-                if not told(count, len(agreed)):
-                    return ""
+            entries = _read(folder, [number for number, review in reviews(folder).items() if review.agreed is not None], told)
+            if entries is None:
+                return ""
             done = iter(range(len(entries)))
             problems = list(export(entries, folder, target, "reviewed", lambda: told(next(done, 0), len(entries))))
             parts, left_out = translate("history", "parts"), translate("history", "left out")
@@ -286,3 +276,13 @@ class HistoryPage(Page):
         """Nothing is left running."""
         self._timer.stop()
         self._work.close_work()
+
+
+def _read(folder: Path, numbers: Sequence[int], told: Told) -> list[Listed] | None:
+    """Records of these numbers; None if it was cancelled."""
+    entries: list[Listed] = []
+    for count, number in enumerate(numbers):
+        if not told(count, len(numbers)):
+            return None
+        entries += read_records(folder, Wanted(number=number))
+    return entries

@@ -1749,9 +1749,5 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <source>something is still being done: wait for it or cancel it</source>
         <translation>es läuft noch etwas: abwarten oder abbrechen</translation>
     </message>
-    <message>
-        <source>such a file exists already: choose another name</source>
-        <translation>eine solche Datei gibt es schon: anderen Namen wählen</translation>
-    </message>
 </context>
 </TS>

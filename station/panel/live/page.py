@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QSizePolicy
 
 from station.domain import SEGMENTS, Purpose
 from station.errors import WeldgateError
-from station.events import PartEvent, Preview
+from station.events import PartEvent
 from station.panel.card import Facts, label, titled
 from station.panel.live.lamp_state import lamp
 from station.panel.live.score_history import ScoreHistory
@@ -21,7 +21,6 @@ from station.panel.weld.strip_view import StripView
 from station.panel.weld.weld_view import WeldView
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
-from station.settings import for_recipe
 from station.users import Level
 
 AGE_MS = 200
@@ -64,7 +63,8 @@ class LivePage(Page):
         self.hold.setToolTip(translate("live", "The picture stays; lamp and counters go on"))
         self.hold.setCheckable(True)
         self.hold.toggled.connect(self._show_picture)
-        self._held: Preview | None = None
+        self._held = False
+        """Whether a picture stays."""
         self.show_map = QPushButton(translate("live", "Defect map"))
         self.show_map.setToolTip(translate("live", "Where the network sees defects in the last NOK part"))
         self.show_map.clicked.connect(self._ask_map)
@@ -169,13 +169,12 @@ class LivePage(Page):
     def _show_picture(self) -> None:
         """The last part's own picture; else, darkened, the one before, and said so."""
         last, preview = self._session.last, self._session.preview
-        if last is None or (self.hold.isChecked() and self._held is not None):
+        if last is None or (self.hold.isChecked() and self._held):
             return
-        self._held = None
+        self._held = False
         if preview is not None and shows(preview, last):
-            if self.hold.isChecked():
-                self._held = preview
-            held = "  ·  " + translate("live", "HELD") if self.hold.isChecked() else ""
+            self._held = self.hold.isChecked()
+            held = "  ·  " + translate("live", "HELD") if self._held else ""
             self.weld.show_weld(drawn(preview, last), caption=_caption(last) + held)
             self.strip.show_strip(strip_image(preview), nok_scores(last.record), last.seg_nok)
         else:
@@ -198,14 +197,12 @@ class LivePage(Page):
         pinned = self._session.last_nok
         if pinned is None:
             return
-        record, folder = pinned.part.record, self._session.folder
-        settings, number = self._session.settings, record.provenance.recipe
+        record, settings = pinned.part.record, self._session.settings
 
         def work(_told: Told) -> tuple[int, QImage]:
             from station.panel.weld.kept import defect_map  # only who asks pays for the network
-            from station.recipe import load_inspector
 
-            return record.inspection_id, defect_map(load_inspector(for_recipe(settings, number))[0].classifier, folder, record)
+            return defect_map(settings, record)
 
         self._work.start(translate("live", "defect map"), work)
 

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from station.imagefile import read_image
 from station.inspection import Inspector
 from station.panel.card import Choice, Table, label, titled
+from station.panel.dialogs import ask_folder
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.setup.field import NumberField
@@ -123,9 +124,9 @@ class ReplayPage(Page):
         self.report.setEnabled(not hint and self.done is not None)
 
     def _ask_folder(self) -> None:
-        name = QFileDialog.getExistingDirectory(self, translate("replay", "folder with images"), options=QFileDialog.Option.ReadOnly)
-        if name and self._session.may(Level.OPERATOR):  # or their time was over meanwhile
-            self.folder.setText(name)
+        folder = ask_folder(self, self._session, translate("replay", "folder with images"))
+        if folder is not None:
+            self.folder.setText(str(folder))
             self.what.setCurrentIndex(self.what.count() - 1)
 
     def start(self) -> None:
@@ -220,9 +221,9 @@ class ReplayPage(Page):
         self._looking.start("", work)
 
     def _ask_report(self) -> None:
-        name = QFileDialog.getExistingDirectory(self, translate("replay", "folder for the report"), options=QFileDialog.Option.ReadOnly)
-        if name and self._session.may(Level.OPERATOR):
-            self.write_report(Path(name) / "weldgate-replay")
+        folder = ask_folder(self, self._session, translate("replay", "folder for the report"))
+        if folder is not None:
+            self.write_report(folder / "weldgate-replay")
 
     def write_report(self, folder: Path) -> None:
         """report.html with pictures, and replay.json."""

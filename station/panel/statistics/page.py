@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QFileDialog, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Wanted, find, read_records, read_words
 from station.archive.schema import NAME as INDEX
@@ -12,12 +12,13 @@ from station.archive.statistics import Summary, summarise
 from station.domain import Verdict
 from station.errors import WeldgateError
 from station.panel.card import Choice, Table, label, titled
+from station.panel.dialogs import ask_file
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.statistics.charts import Chart
 from station.panel.weld.clock_face import ClockFace
 from station.panel.words import data, translate
-from station.panel.work import Told, WorkBar, ended, exists
+from station.panel.work import Told, WorkBar
 from station.records import Record
 from station.report.page import report
 from station.settings import for_recipe
@@ -147,14 +148,9 @@ class StatisticsPage(Page):
         self.cycle.show_histogram([p.cycle_ms for p in summary.points])
 
     def _ask_report(self) -> None:
-        title, only = translate("statistics", "Report"), QFileDialog.Option.ReadOnly
-        name, _ = QFileDialog.getSaveFileName(self, title, "report.html", "HTML (*.html)", options=only)
-        if name and self._session.may(Level.OPERATOR):  # or their time was over meanwhile
-            path = ended(name, ".html")
-            if path is None:
-                self._problem.setText(exists())
-            else:
-                self.write_report(path)
+        path = ask_file(self, self._session, translate("statistics", "Report"), "report.html")
+        if path is not None:
+            self.write_report(path)
 
     def write_report(self, target: Path) -> None:
         """The chosen parts as one HTML file."""

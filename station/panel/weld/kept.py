@@ -18,6 +18,7 @@ from station.panel.weld.pictures import strip_image
 from station.panel.weld.weld_view import Drawn
 from station.preview import make_preview
 from station.records import Record
+from station.settings import Settings, for_recipe
 from station.vision.unwrap import segments, unwrap
 
 HOLE_RGB, MISSING_RGB = (255, 60, 50), (255, 190, 40)
@@ -45,13 +46,17 @@ def judged(image: Image, inspection: Inspection, nok: tuple[bool, ...]) -> tuple
     return Drawn(small, preview.scale, preview.origin_px, inspection.ring, nok, inspection.findings), strip_image(preview)
 
 
-def defect_map(classifier: Classifier, folder: Path, record: Record) -> QImage:
-    """Where the network sees holes (red) and missing weld (yellow), to lay over the strip. Raises ImageError, ModelError."""
+def defect_map(settings: Settings, record: Record) -> tuple[int, QImage]:
+    """Number of the part, and where the network sees holes (red) and missing weld (yellow), to lay over the strip.
+
+    Raises ImageError, ModelError, SettingsError.
+    """
     if record.inspection.ring is None:
         raise ImageError("no weld was found in it")
+    classifier = Classifier(for_recipe(settings, record.provenance.recipe).model.path)
     if classifier.card.file_hash != record.provenance.model_hash:
         raise ImageError("another model judged it: where that saw defects is not known")
-    maps = classifier(segments(unwrap(kept_frame(folder, record), record.inspection.ring))).maps  # (21, 2, 32, 32)
+    maps = classifier(segments(unwrap(kept_frame(settings.archive.folder, record), record.inspection.ring))).maps  # (21, 2, 32, 32)
     whole = np.concatenate(list(maps), axis=2)  # (2, 32, 672)
     layer = np.zeros((*whole.shape[1:], 4), np.uint8)
     for channel, rgb in ((whole[1], MISSING_RGB), (whole[0], HOLE_RGB)):
@@ -60,7 +65,7 @@ def defect_map(classifier: Classifier, folder: Path, record: Record) -> QImage:
         layer[strong, 3] = (channel[strong] * 200).astype(np.uint8)
     height, width = layer.shape[:2]
     image = QImage(layer.data, width, height, width * 4, QImage.Format.Format_ARGB32)
-    return image.scaledToWidth(STRIP_COLUMNS // 2)
+    return record.inspection_id, image.scaledToWidth(STRIP_COLUMNS // 2)
 
 
 def small_pictures(folder: Path, rows: Sequence[Row], told: Callable[[int, int], bool]) -> dict[int, QImage]:

@@ -1,0 +1,52 @@
+"""Where files go: with their ending, never over another one unasked, never for somebody who is gone."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication, QDialogButtonBox, QFileDialog, QLineEdit, QMessageBox
+
+from station.panel.dialogs import ask_file
+from station.panel.window import Window
+from station.users import Level, User
+
+
+def answered(window: Window, typed: Path, over: bool | None, meanwhile: Callable[[], None] = lambda: None) -> Path | None:
+    """What comes of a name that is typed; `over`: what is said when asked about a file that exists, None: nothing is asked."""
+    asked: list[bool] = []
+
+    def answer() -> None:
+        box = QApplication.activeModalWidget()
+        if isinstance(box, QMessageBox):
+            asked.append(bool(over))
+            box.button(QMessageBox.StandardButton.Yes if over else QMessageBox.StandardButton.No).click()
+
+    def write() -> None:
+        dialog = QApplication.activeModalWidget()
+        assert isinstance(dialog, QFileDialog)
+        meanwhile()
+        dialog.findChildren(QLineEdit)[0].setText(str(typed))
+        QTimer.singleShot(200, answer)
+        dialog.findChildren(QDialogButtonBox)[0].button(QDialogButtonBox.StandardButton.Save).click()
+        QTimer.singleShot(400, dialog.reject)  # if it is still there
+
+    QTimer.singleShot(200, write)
+    found = ask_file(window, window.session, "Table", "parts.csv")
+    assert bool(asked) == (over is not None)
+    return found
+
+
+@pytest.mark.parametrize("name", ["lot", "lot.csv"])
+def test_a_file_has_its_ending_and_goes_over_another_only_if_that_is_said(window: Window, tmp_path: Path, name: str) -> None:
+    window.session.log_in(User("Bob", Level.OPERATOR))
+    wanted = tmp_path / "lot.csv"
+    assert answered(window, tmp_path / name, None) == wanted
+    wanted.write_text("before")
+    assert answered(window, tmp_path / name, False) is None
+    assert answered(window, tmp_path / name, True) == wanted
+
+
+def test_nothing_comes_of_a_dialog_whose_user_is_gone(window: Window, tmp_path: Path) -> None:
+    window.session.log_in(User("Bob", Level.OPERATOR))
+    assert answered(window, tmp_path / "lot", None, lambda: window.session.log_out("idle")) is None
