@@ -49,7 +49,7 @@ class SearchFields(QWidget):
         top.addWidget(self.serial, 1)
         for box in self._boxes:
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-            box.setMinimumContentsLength(7 if box is self.state else 6)
+            box.setMinimumContentsLength(8 if box is self.state else 6)
             box.currentIndexChanged.connect(self._on_chosen)
             top.addWidget(box)
         top.addWidget(self.look_up)
