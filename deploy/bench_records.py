@@ -17,6 +17,8 @@ from deploy.demo import shipped_parts
 from station.archive.reader import Wanted, find
 from station.archive.schema import open_index
 from station.archive.writer import Archive
+from station.classify.thresholds import Limit, Thresholds
+from station.defects import KINDS
 from station.domain import SEGMENTS, Frame, Inspection, Origin, Ring, SegmentScores, Verdict
 from station.imagefile import PNG, encode_png, read_image
 from station.records import Part, Provenance
@@ -73,9 +75,9 @@ def _codecs(console: Console) -> None:
 def _writing(folder: Path) -> list[tuple[str, Callable[[], object]]]:
     image = read_image(shipped_parts()[0].path)
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
-    scores = (SegmentScores(0.9, 0.05, 0.05),) * SEGMENTS
-    inspection = Inspection(Verdict.OK, None, Ring(50, 50, 40, 1), None, scores, look=(0.123,) * 192)
-    provenance = Provenance("bench", "0", "", "", 0, 0.5, 0.5)
+    scores = (SegmentScores(1.0, dict.fromkeys(KINDS, 0.0)),) * SEGMENTS
+    inspection = Inspection(Verdict.OK, None, Ring(50, 50, 40, 1), None, scores, rejected=(None,) * SEGMENTS, look=(0.123,) * 192)
+    provenance = Provenance("bench", "0", "", "", 0, Thresholds(tuple(Limit(kind, 0.5) for kind in KINDS)))
 
     def commit(frame: Frame | None) -> None:
         archive.commit(archive.begin(frame), inspection, Part("BENCH", 1, Origin.SIMULATED), provenance, datetime.now(UTC))

@@ -19,6 +19,8 @@ import numpy as np
 
 from station.archive.reader import find, read_record, verify
 from station.archive.writer import Archive
+from station.classify.thresholds import Limit, Thresholds
+from station.defects import KINDS
 from station.domain import SEGMENTS, Frame, Inspection, Origin, Ring, SegmentScores, Verdict
 from station.records import Part, Provenance
 from station.settings import ArchiveSettings
@@ -83,8 +85,9 @@ def _one(folder: Path, wait_s: float) -> set[int]:
 def _write(folder: Path, told: int) -> None:
     rng = np.random.default_rng()
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
-    inspection = Inspection(Verdict.OK, None, Ring(50, 50, 40, 1), None, (SegmentScores(0.9, 0.05, 0.05),) * SEGMENTS)
-    provenance = Provenance("chaos", "0", "", "", 0, 0.5, 0.5)
+    clean = SegmentScores(1.0, dict.fromkeys(KINDS, 0.0))
+    inspection = Inspection(Verdict.OK, None, Ring(50, 50, 40, 1), None, (clean,) * SEGMENTS, rejected=(None,) * SEGMENTS)
+    provenance = Provenance("chaos", "0", "", "", 0, Thresholds(tuple(Limit(kind, 0.5) for kind in KINDS)))
     while True:
         now = datetime.now(UTC)
         frame = Frame(rng.integers(0, 256, (120, 160), dtype=np.uint8), now, "chaos", Origin.SIMULATED)

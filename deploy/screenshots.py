@@ -154,7 +154,7 @@ def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:
         _wait(lambda: shown.camera.weld.drawn is not None)  # type: ignore[attr-defined]
     if view == "setup-recipe":
         recipe = shown.recipe  # type: ignore[attr-defined]
-        recipe.fields["hole_min_mm"].set(1.5)
+        recipe.fields["limits.hole.min_mm"].set(1.5)
         recipe.segments.set({2: 0.02})
         recipe.ask.click()
         _wait(lambda: bool(recipe.said.text()))

@@ -97,7 +97,7 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     inspection = loaded.inspector.inspect(image)
     record = archive.commit(archive.begin(frame), inspection, Part("SOAK", 1, Origin.SIMULATED), loaded.provenance, frame.grabbed_at)
     archive.close()
-    nok = loaded.inspector.refused(inspection)
+    nok = inspection.nok
     words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1}))
     now_s = time.monotonic()
     status = StatusEvent(now_s, now_s, 0.0, True, "", Origin.SIMULATED, (0,) * COMMAND_WORDS, words)

@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.errors import LearningError
+from station.defects import KINDS as DEFECT_KINDS
 from station.errors import WeldgateError
 
 if TYPE_CHECKING:
     from station.inspection import Inspector
 
 SHIPPED = Path(__file__).resolve().parent / "shipped"
-KINDS = {"hole": 1, "missing_weld": 2}
+KINDS = {kind.name: label for label, kind in enumerate(DEFECT_KINDS, start=1)}
+"""Label of each kind of defect."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -54,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
     _run_options(train)
     train.add_argument("--seeds", type=int, nargs="+", default=[0], metavar="N", help="one run each; more than one: a folder each")
     train.add_argument("--steps", type=int, metavar="N", help="batches of 64 (default: 5000)")
-    train.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds of defect to learn (default: both)")
+    train.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds of defect to learn (default: all)")
     train.add_argument("--protocol", choices=("weldgate", "paper"), default="weldgate", help="paper: OK against NOK as published")
 
     fine = add("fine-tune", _fine_tune, "train on a line's own labelled images: 10 px window, balanced, 70/15/15 %% by part")
@@ -81,7 +83,7 @@ def _parser() -> argparse.ArgumentParser:
     _network_options(judge)
     judge.add_argument("--report", type=Path, metavar="DIR", help="write report.html and evaluation.json there")
     judge.add_argument("--boxes", action="store_true", help="judge the boxes of the defect map too (datasets only)")
-    judge.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds whose boxes are looked for (default: both)")
+    judge.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds whose boxes are looked for (default: all)")
 
     export = add("export", _export, "make the 8-bit file of a classifier, kept only if it judges as well")
     export.add_argument("model", type=Path, metavar="FILE", help="float32 classifier")

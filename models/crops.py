@@ -7,20 +7,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from station.classify.extent import CELL_PX, CELLS
-from station.classify.onnx import CLASSES
+from station.classify.onnx import CLASSES, MAPPED
 
-OK, HOLE, MISSING = range(3)
+OK = 0
+"""Label of a crop without a defect; the label of a kind of defect is its place in `CLASSES`."""
 IGNORED = -1
 """A crop that a defect just touches: neither OK nor NOK."""
-DEFECTS = CLASSES[1:]
+DEFECTS = range(1, len(CLASSES))
+"""Labels of the kinds of defect, the graver later."""
+CHANNELS = tuple(kind.name for kind in MAPPED)
+"""Kinds of defect of the maps' channels."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Crops:
-    """N crops: images (N, 128, 128) uint8 with labels (N,) int64: OK, HOLE or MISSING.
+    """N crops: images (N, 128, 128) uint8 with labels (N,) int64: OK, or the place of a kind of defect in `CLASSES`.
 
-    `maps` (N, 2, 32, 32) uint8 says how much of each cell of 4 x 4 px a hole or a missing weld covers, 0 to 255; it means
-    nothing where `mapped` (N,) is False. `parts` (N,) names the part of each crop: no part may be on both sides of a split.
+    `maps` (N, C, 32, 32) uint8 says how much of each cell of 4 x 4 px a defect covers, 0 to 255, one channel for each of the C kinds
+    in `CHANNELS`; it means nothing where `mapped` (N,) is False. `parts` (N,) names the part of each crop: no part may be on both
+    sides of a split.
     """
 
     images: NDArray[np.uint8]
@@ -60,4 +65,4 @@ def only(crops: Crops, kinds: Sequence[int]) -> Crops:
 
 def empty_maps(count: int) -> NDArray[np.uint8]:
     """Maps of crops without a defect."""
-    return np.zeros((count, len(DEFECTS), CELLS, CELLS), np.uint8)
+    return np.zeros((count, len(CHANNELS), CELLS, CELLS), np.uint8)

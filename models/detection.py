@@ -5,19 +5,19 @@ The boxes are the edges of the map's areas: one network classifies and locates, 
 
 import contextlib
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from models.crops import DEFECTS, HOLE, OK, Crops
+from models.crops import CHANNELS, OK, Crops
 from models.errors import LearningError
 from models.measures import Counts, count
-from station.classify.decision import JOIN_MM, KINDS
 from station.classify.extent import CELL_PX, CELLS, LEVEL, Map, extents
-from station.classify.onnx import Classifier, Judged
+from station.classify.onnx import CLASSES, Classifier, Judged
+from station.defects import DefectKind
 
 BATCH = 256
 PAD = 3
@@ -28,9 +28,9 @@ MAX_SIDE = CELLS * CELL_PX
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """One detected defect: `kind` 0 hole or 1 missing weld, left, top, width, height in px, score 0..1."""
+    """One detected defect: `kind` by name, left, top, width, height in px, score 0..1."""
 
-    kind: int
+    kind: str
     box_px: tuple[float, float, float, float]
     score: float
 
@@ -45,17 +45,17 @@ class Detection:
     """OK / NOK, by whether there is any box."""
 
 
-def boxes(maps: Map, probabilities: Sequence[float]) -> list[Box]:
-    """Boxes of one crop's map (2, 32, 32); `probabilities` of hole and of missing weld weigh the scores."""
+def boxes(maps: Map, probabilities: Mapping[DefectKind, float]) -> list[Box]:
+    """Return the boxes of one crop's map (C, 32, 32), scored by the `probabilities` of its C kinds, in the order of the channels."""
     found = []
-    for kind, (values, reason) in enumerate(zip(maps, KINDS, strict=True)):
+    for values, (kind, probability) in zip(maps, probabilities.items(), strict=True):
         padded = np.pad(values, ((0, 0), (PAD, PAD)))
-        for extent in extents(padded, JOIN_MM[reason] * 1000 / UM_PER_PX):
+        for extent in extents(padded, kind.joins_mm * 1000 / UM_PER_PX):
             left, right = (float(np.clip(v - PAD * CELL_PX, 0, MAX_SIDE)) for v in (extent.start_px, extent.end_px))
             top, bottom = (float(np.clip(v, 0, MAX_SIDE)) for v in (extent.top_px, extent.bottom_px))
             if right > left and bottom > top:
-                score = extent.peak * probabilities[kind]
-                found.append(Box(kind, (left, top, right - left, bottom - top), score))
+                score = extent.peak * probability
+                found.append(Box(kind.name, (left, top, right - left, bottom - top), score))
     return found
 
 
@@ -66,34 +66,36 @@ def evaluate_boxes(folders: Sequence[Path], held: Crops, classifier: Classifier,
     truth = _truth(folders)
     numbers = {image["path"]: image["id"] for image in truth.dataset["images"]}
     results: list[dict[str, Any]] = []
+    names = [CLASSES[kind] for kind in kinds if CLASSES[kind] in CHANNELS]
     nok = np.zeros(len(held), bool)
     for start in range(0, len(held), BATCH):
         judged = classifier(held.images[start : start + BATCH])
         for offset, found in enumerate(_all(judged)):
             for box in found:
-                nok[start + offset] |= box.score >= LEVEL and box.kind + HOLE in kinds
+                nok[start + offset] |= box.score >= LEVEL and box.kind in names
                 results.append(
                     {
                         "image_id": numbers[str(held.names[start + offset])],
-                        "category_id": box.kind + 1,
+                        "category_id": CHANNELS.index(box.kind) + 1,
                         "bbox": list(box.box_px),
                         "score": box.score,
                     }
                 )
     precision = {}
-    for kind in kinds:
+    for name in names:
         with contextlib.redirect_stdout(io.StringIO()):
             scored = COCOeval(truth, truth.loadRes(results) if results else truth.loadRes([]), "bbox")
-            scored.params.catIds = [kind - HOLE + 1]
+            scored.params.catIds = [CHANNELS.index(name) + 1]
             scored.evaluate()
             scored.accumulate()
             scored.summarize()
-        precision[DEFECTS[kind - HOLE]] = float(scored.stats[1])
+        precision[name] = float(scored.stats[1])
     return Detection(float(np.mean(list(precision.values()))), precision, count(nok, held.labels != OK))
 
 
 def _all(judged: Judged) -> list[list[Box]]:
-    return [boxes(maps, (s.hole, s.missing_weld)) for maps, s in zip(judged.maps, judged.scores, strict=True)]
+    pairs = zip(judged.maps, judged.scores, strict=True)
+    return [boxes(maps, {kind: s.defects[kind] for kind in judged.mapped}) for maps, s in pairs]
 
 
 def _truth(folders: Sequence[Path]) -> Any:

@@ -82,7 +82,7 @@ DRIFTS: dict[str, Callable[[Strip, float, np.random.Generator], Strip]] = {
 def drift(lot: Path, classifier: Classifier, reference: Reference | None, progress: Callable[[], None] = lambda: None) -> list[Step]:
     """Judge a lot under each drift at each strength; without a reference no drift is watched for. Raises LearningError."""
     strips = read_lot(lot)
-    limits = Thresholds(classifier.card.hole_threshold, classifier.card.missing_threshold)
+    limits = classifier.card.thresholds
     steps = []
     for name, change in DRIFTS.items():
         for strength in STRENGTHS:

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import HOLE, IGNORED, OK, Crops
+from models.crops import IGNORED, OK, Crops
 from models.labelled import crop_label, defects_of, frames, read_labels
 from models.measures import refused
-from models.scores import class_scores
+from models.scores import class_scores, row_of
 from station.classify.onnx import CLASSES, Classifier
 from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_DEG, SEGMENTS, Inspection, Verdict
@@ -67,8 +67,8 @@ class Worst:
 class Evaluation:
     """What came out: parts (none if crops were judged), and of each judged crop its score, label and decision.
 
-    scores (N, 3), labels (N,) without IGNORED, nok (N,); `worst`: farthest from their truth first; `unjudged` NOK segments lie on parts
-    that ended in ERROR.
+    scores (N, classes), labels (N,) without IGNORED, nok (N,); `worst`: farthest from their truth first; `unjudged` NOK segments
+    lie on parts that ended in ERROR.
     """
 
     parts: tuple[PartResult, ...]
@@ -93,7 +93,7 @@ def evaluate_lot(lot: Path, inspector: Inspector, progress: Callable[[], None] =
         judged = inspector.inspect(image)
         defects = defects_of(item)
         labels = [crop_label(defects, i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i in range(SEGMENTS)]
-        nok = list(inspector.refused(judged)) or [False] * SEGMENTS
+        nok = list(judged.nok) or [False] * SEGMENTS
         crops.add(str(item["frame"]), image, judged, labels, nok)
         parts.append(_part(item, judged, nok, inspector))
         progress()
@@ -116,7 +116,7 @@ class _Collected:
     """Segments as they come; of their pictures only the worst are kept."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple[tuple[float, float, float], int, bool]] = []
+        self._rows: list[tuple[tuple[float, ...], int, bool]] = []
         self._worst: list[Worst] = []
         self._unjudged = 0
 
@@ -128,7 +128,7 @@ class _Collected:
         pictures = segments(unwrap(image, judged.ring))
         for index, (s, label, bad) in enumerate(zip(judged.scores, labels, nok, strict=True)):
             if label != IGNORED:
-                self._rows.append(((s.ok, s.hole, s.missing_weld), label, bad))
+                self._rows.append((row_of(s), label, bad))
                 self._worst.append(Worst(f"{name}, segment {index + 1}", pictures[index], label, s.nok))
         self._worst = _farthest(self._worst)
 
@@ -151,7 +151,7 @@ def _part(item: dict[str, Any], judged: Inspection, nok: list[bool], inspector: 
     found = []
     for defect, entry in zip(defects_of(item), item["defects"], strict=True):
         on = [i for i in range(SEGMENTS) if crop_label((defect,), i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) > OK]
-        kind = CLASSES[HOLE] if defect.label == HOLE else CLASSES[-1]
+        kind = CLASSES[defect.label]
         length = entry.get("length_mm")
         found.append(Defect(kind, None if length is None else float(length), any(nok[i] for i in on)))
     return PartResult(

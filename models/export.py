@@ -41,14 +41,14 @@ class Contract:
     """(192, 192): statistics minus mean times this have unit covariance over the training crops."""
     novelty_limit: float
     """Distance of a part to the training images from which it is reported."""
-    prior_shift: tuple[float, float, float]
-    """Added to the logits of ok, hole, missing weld: from the shares of the training batches to those of a line."""
+    prior_shift: tuple[float, ...]
+    """Added to the logits of the classes: from the shares of the training batches to those of a line."""
 
     def metadata(self) -> dict[str, str]:
         """As in the file."""
         return {
             "weldgate.classes": json.dumps(CLASSES),
-            "weldgate.thresholds": json.dumps({"hole": self.thresholds.hole, "missing_weld": self.thresholds.missing_weld}),
+            "weldgate.thresholds": json.dumps({limit.kind.name: limit.threshold for limit in self.thresholds.kinds}),
             "weldgate.novelty_limit": json.dumps(self.novelty_limit),
             "weldgate.data_hash": self.data_hash,
             "weldgate.version": self.version,
@@ -58,7 +58,7 @@ class Contract:
 class Shipped(nn.Module):
     """The network as the station runs it: probabilities, defect map, statistics of the look, whitened over the training images."""
 
-    def __init__(self, network: WeldNet, prior_shift: tuple[float, float, float]) -> None:
+    def __init__(self, network: WeldNet, prior_shift: tuple[float, ...]) -> None:
         super().__init__()
         self.network = network
         self.prior_shift: Tensor
@@ -66,7 +66,7 @@ class Shipped(nn.Module):
         self.whiten = nn.Linear(STATISTICS, STATISTICS)
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Crops (K, 1, 128, 128) uint8 to probabilities (K, 3), map (K, 2, 32, 32) 0..1, looks (K, 192)."""
+        """Return probabilities (K, classes), map (K, channels, 32, 32) 0..1 and looks (K, 192) of crops (K, 1, 128, 128) uint8."""
         logits, where, statistics = self.network(crops)
         return torch.softmax(logits + self.prior_shift, dim=1), torch.sigmoid(where), self.whiten(statistics)
 
@@ -92,7 +92,7 @@ def export(network: WeldNet, path: Path, contract: Contract) -> None:
     with torch.no_grad():
         wanted = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
     got = Classifier(part)(crops.numpy()[:, 0])
-    pairs = zip(wanted, (np.array([(s.ok, s.hole, s.missing_weld) for s in got.scores]), got.maps, got.looks), strict=True)
+    pairs = zip(wanted, (np.array([(s.ok, *s.defects.values()) for s in got.scores]), got.maps, got.looks), strict=True)
     keep(part, path, max(largest_gap(a, b) for a, b in pairs))
 
 
@@ -108,7 +108,9 @@ def export_ring(network: RingNet, path: Path, version: str, data_hash: str) -> N
 
 def read_network(path: Path) -> WeldNet:
     """The network of a classifier file, to train it further. Raises ModelError or LearningError if it is none."""
-    Classifier(path)
+    classes = tuple(limit.kind.name for limit in Classifier(path).card.thresholds.kinds)
+    if classes != CLASSES[1:]:
+        raise LearningError(f"{path}: knows {', '.join(classes)}, today's kinds are {', '.join(CLASSES[1:])}; train a new network")
     network = fused(WeldNet())
     held = {i.name: torch.from_numpy(numpy_helper.to_array(i).copy()) for i in onnx.load(str(path)).graph.initializer}
     weights = {name: held.get(f"network.{name}") for name in network.state_dict()}

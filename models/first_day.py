@@ -67,7 +67,7 @@ def first_day(paths: Sequence[Path], inspector: Inspector, limit: float, progres
             failed.append(f"{path.name}: {judged.reason}")
         else:
             names.append(path.name)
-            over = [max(s.hole / thresholds.hole, s.missing_weld / thresholds.missing_weld) for s in judged.scores]
+            over = [max(s.defects[limit.kind] / limit.threshold for limit in thresholds.kinds) for s in judged.scores]
             room.append(max(1.0, max(over)) if judged.verdict is Verdict.NOK else max(over))
             novelty.append(judged.novelty)
             looks.append(judged.look)

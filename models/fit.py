@@ -12,13 +12,20 @@ from torch.nn import functional
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from models.augment import augment
-from models.crops import HOLE, MISSING, OK, Crops
+from models.crops import DEFECTS, OK, Crops
 from models.network import WeldNet, channels_last
+from station.defects import KINDS
 
 Report = Callable[[str], None]
 Trained = TypeVar("Trained", bound=nn.Module)
 MIN_LEFT = 0.3
 """A crop whose defect was moved out of the picture but for this share teaches nothing."""
+
+
+def batch_shares() -> tuple[float, ...]:
+    """Return half OK, and half by how frequent each kind of defect is on a line."""
+    fractions = [kind.line_fraction for kind in KINDS]
+    return 0.5, *(fraction / (2 * sum(fractions)) for fraction in fractions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +36,8 @@ class Plan:
     batch: int = 64
     learning_rate: float = 0.003
     weight_decay: float = 0.02
-    shares: tuple[float, float, float] = (0.5, 0.3, 0.2)
-    """Shares of OK, hole and missing weld in a batch."""
+    shares: tuple[float, ...] = batch_shares()
+    """Shares of OK and of each kind of defect in a batch, in the order of `CLASSES`."""
     map_weight: float = 4.0
     smoothing: float = 0.02
     average: float = 0.998
@@ -49,7 +56,7 @@ def fit(network: Trained, crops: Crops, plan: Plan, report: Report) -> Trained:
     rng = torch.Generator().manual_seed(plan.seed)
     images, maps = torch.from_numpy(crops.images), torch.from_numpy(crops.maps)
     labels, mapped = torch.from_numpy(crops.labels), torch.from_numpy(crops.mapped)
-    pools = [np.flatnonzero(crops.labels == kind) for kind in (OK, HOLE, MISSING)]
+    pools = [np.flatnonzero(crops.labels == kind) for kind in (OK, *DEFECTS)]
     lost = np.full(len(crops), 1.0)
     averaging = get_ema_multi_avg_fn(plan.average)  # type: ignore[no-untyped-call]
     average = AveragedModel(network, multi_avg_fn=averaging, use_buffers=True)
@@ -114,7 +121,7 @@ def _loss(
 
 
 def predict(network: WeldNet, images: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Probabilities (N, 3) and statistics (N, 192) of images (N, 128, 128) uint8."""
+    """Probabilities (N, classes) and statistics (N, 192) of images (N, 128, 128) uint8."""
     network.eval()
     with torch.no_grad():
         answers = [network(chunk[:, None]) for chunk in torch.split(torch.from_numpy(images), 128)]

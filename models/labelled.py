@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import HOLE, IGNORED, MISSING, OK, Crops, empty_maps
+from models.crops import DEFECTS, IGNORED, OK, Crops, empty_maps
 from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, Ring
@@ -28,7 +28,9 @@ TOUCH_DEG = 1e-6
 """Less is rounding, not overlap."""
 WINDOW_STEP_PX = 10
 SHARES = (0.70, 0.15, 0.15)
-KINDS = {"hole_small": HOLE, "hole_long": HOLE, "hole": HOLE, "missing_weld": MISSING}
+LABELS = {name: label for label, name in enumerate(CLASSES) if label != OK}
+OLD_NAMES = {"hole_small": "hole", "hole_long": "hole"}
+"""Kinds of defect in lots of earlier versions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,7 @@ class LabelledStrip:
 
 
 def crop_label(defects: tuple[Defect, ...], start_deg: float, end_deg: float) -> int:
-    """Class of the arc [start, end]: a missing weld weighs more than a hole, any defect more than IGNORED."""
+    """Return the label of the arc [start, end]: the gravest kind of defect that covers enough of it; any weighs more than IGNORED."""
     label, touched = OK, False
     width = end_deg - start_deg
     for defect in defects:
@@ -115,20 +117,20 @@ def read_images(folder: Path) -> list[tuple[NDArray[np.uint8], float, float, flo
 
 
 def window_crops(strips: Sequence[LabelledStrip], step_px: int, rng: np.random.Generator | None) -> Crops:
-    """Crops by a window that slides over each strip; with `rng` the kinds are balanced as in the paper: the rarer defect is
-    repeated to the number of the other, the OK crops are cut down to the number of both (repeated if there are fewer)."""
+    """Crops by a window that slides over each strip; with `rng` the kinds are balanced as in the paper: the rarer kinds
+    of defect are repeated to the number of the most frequent one, the OK crops are cut down to the number of all (repeated if fewer)."""
     places = [
         (i, c, strip.crop_label(c)) for i, strip in enumerate(strips) for c in range(0, STRIP_COLUMNS - STRIP_COLUMNS % step_px, step_px)
     ]
     labels = np.array([label for _, _, label in places])
     chosen = np.flatnonzero(labels != IGNORED)
     if rng is not None:
-        pools = {kind: chosen[labels[chosen] == kind] for kind in (OK, HOLE, MISSING)}
+        pools = {kind: chosen[labels[chosen] == kind] for kind in (OK, *DEFECTS)}
         lacking = [CLASSES[kind] for kind, pool in pools.items() if not pool.size]
         if lacking:
             raise LearningError(f"the parts to train on show no {', '.join(lacking)}; label more parts")
-        most = max(len(pools[HOLE]), len(pools[MISSING]))
-        wanted = {OK: 2 * most, HOLE: most, MISSING: most}
+        most = max(len(pools[kind]) for kind in DEFECTS)
+        wanted = {OK: len(DEFECTS) * most, **dict.fromkeys(DEFECTS, most)}
         chosen = np.concatenate([_resampled(pool, wanted[kind], rng) for kind, pool in pools.items()])
     return _cut(strips, [places[i] for i in chosen])
 
@@ -168,7 +170,7 @@ def split_by_part(strips: Sequence[LabelledStrip], seed: int) -> tuple[list[Labe
     rng = np.random.default_rng(seed)
     sides: dict[str, int] = {}
     owed = np.zeros(3)
-    for kind in (MISSING, HOLE, OK):
+    for kind in (*reversed(DEFECTS), OK):
         for name in rng.permutation([n for n, k in parts if k == kind]):
             owed += SHARES
             side = int(np.argmax(owed))
@@ -219,8 +221,8 @@ def _problem(item: dict[str, Any]) -> str | None:
             return "centre and radius must be numbers"
         for defect in item["defects"]:
             start, end = defect["angle_deg"]
-            if defect["kind"] not in KINDS:
-                return f"unknown kind {defect['kind']}; known: {', '.join(KINDS)}"
+            if _name_of(defect) not in LABELS:
+                return f"unknown kind {defect['kind']}; known: {', '.join(LABELS)}"
             if not 0 <= float(end) - float(start) <= 360:
                 return f"angle_deg {defect['angle_deg']} must be [start, end], end 0 to 360 degrees after start"
         if item["verdict"] not in ("OK", "NOK") or (item["verdict"] == "NOK") != bool(item["defects"]):
@@ -230,6 +232,10 @@ def _problem(item: dict[str, Any]) -> str | None:
     return None
 
 
+def _name_of(defect: dict[str, Any]) -> str:
+    return OLD_NAMES.get(str(defect["kind"]), str(defect["kind"]))
+
+
 def defects_of(item: dict[str, Any]) -> tuple[Defect, ...]:
     """Defects of one labelled part."""
-    return tuple(Defect(KINDS[d["kind"]], float(d["angle_deg"][0]), float(d["angle_deg"][1])) for d in item["defects"])
+    return tuple(Defect(LABELS[_name_of(d)], float(d["angle_deg"][0]), float(d["angle_deg"][1])) for d in item["defects"])

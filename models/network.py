@@ -4,6 +4,8 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+from station.classify.onnx import CLASSES, MAPPED
+
 FEATURES = 160
 """Length of the pooled vector that the classes are told from."""
 STATISTICS = 2 * (32 + 64)
@@ -58,7 +60,7 @@ class WeldNet(nn.Module):
     One network classifies and locates, so that verdict and map come from the same features.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, classes: int = len(CLASSES), channels: int = len(MAPPED)) -> None:
         super().__init__()
         self.quarter = nn.Sequential(_Conv(1, 32, 8, 4), _Mix(32, 3))
         self.eighth = nn.Sequential(_Conv(32, 64, 2, 2), _Mix(64, 5), _Mix(64, 5))
@@ -66,12 +68,12 @@ class WeldNet(nn.Module):
         self.up_eighth = _Up(128, 64, 48)
         self.up_quarter = _Up(48, 32, 32)
         self.fine = _Mix(32, 3)
-        self.map = nn.Conv2d(32, 2, 1)
+        self.map = nn.Conv2d(32, channels, 1)
         self.feature = nn.Sequential(nn.Linear(2 * 128 + 2 * 32, FEATURES), nn.ReLU())
-        self.classes = nn.Sequential(nn.Dropout(0.2), nn.Linear(FEATURES + 2, 3))
+        self.classes = nn.Sequential(nn.Dropout(0.2), nn.Linear(FEATURES + channels, classes))
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Crops (K, 1, 128, 128) uint8 to class logits (K, 3), map logits (K, 2, 32, 32) of hole and missing weld, statistics (K, 192).
+        """Return class logits (K, classes), map logits (K, channels, 32, 32), statistics (K, 192) of crops (K, 1, 128, 128) uint8.
 
         Each crop is brought to mean 0 and standard deviation 1.
         """

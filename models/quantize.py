@@ -17,7 +17,6 @@ from models.errors import LearningError
 from models.measures import count, refused
 from models.scores import class_scores
 from station.classify.onnx import Classifier
-from station.classify.thresholds import Thresholds
 
 CALIBRATION_CROPS = 400
 LOSS_F2 = 0.003
@@ -59,8 +58,7 @@ def quantize(path: Path, target: Path, training: Crops, held: Crops) -> dict[str
         if not model.metadata_props:
             model.metadata_props.extend(onnx.load(str(path)).metadata_props)
             onnx.save(model, str(part))
-        thresholds = Thresholds(card.hole_threshold, card.missing_threshold)
-        f2 = [count(refused(class_scores(Classifier(p), held.images), thresholds), held.labels != OK).f2 for p in (path, part)]
+        f2 = [count(refused(class_scores(Classifier(p), held.images), card.thresholds), held.labels != OK).f2 for p in (path, part)]
         if f2[1] < f2[0] - LOSS_F2:
             raise LearningError(f"{target}: F2 falls from {f2[0]:.4f} to {f2[1]:.4f} in 8 bits; nothing kept, use the float32 file")
         os.replace(part, target)

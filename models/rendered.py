@@ -9,7 +9,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from models.crops import DEFECTS, Crops, coarse, empty_maps, join
+from models.crops import CHANNELS, Crops, coarse, empty_maps, join
 from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_PX
@@ -74,8 +74,9 @@ def _read(folder: Path, entries: list[dict[str, Any]]) -> Crops:
         else:
             images[index] = image
             for defect in entry["defects"]:
-                kind = DEFECTS.index(defect["kind"])
-                maps[index, kind] = np.maximum(maps[index, kind], coarse(_mask(defect["polygon_px"])))
+                if defect["kind"] in CHANNELS:
+                    channel = CHANNELS.index(defect["kind"])
+                    maps[index, channel] = np.maximum(maps[index, channel], coarse(_mask(defect["polygon_px"])))
     if wrong:
         raise LearningError(listed(folder, wrong))
     return Crops(

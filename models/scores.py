@@ -4,11 +4,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from station.classify.onnx import Classifier
+from station.defects import KINDS
+from station.domain import SegmentScores
 
 BATCH = 256
 
 
 def class_scores(classifier: Classifier, images: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """Probabilities (N, 3) of ok, hole and missing weld of crops (N, 128, 128) uint8. Raises ModelError."""
+    """Return probabilities (N, classes) of crops (N, 128, 128) uint8, the columns in the order of `CLASSES`. Raises ModelError."""
     batches = (classifier(images[i : i + BATCH]).scores for i in range(0, len(images), BATCH))
-    return np.array([(s.ok, s.hole, s.missing_weld) for batch in batches for s in batch])
+    return np.array([row_of(scores) for batch in batches for scores in batch])
+
+
+def row_of(scores: SegmentScores) -> tuple[float, ...]:
+    """Return the probabilities in the order of `CLASSES`; 0 for kinds of defect that the classifier does not know."""
+    return scores.ok, *(scores.defects.get(kind, 0.0) for kind in KINDS)

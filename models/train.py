@@ -11,7 +11,7 @@ import torch
 from numpy.typing import NDArray
 
 from models.card import write_card
-from models.crops import HOLE, MISSING, OK, Crops, only
+from models.crops import DEFECTS, OK, Crops, only
 from models.errors import LearningError
 from models.export import Contract, export, read_network
 from models.fit import Plan, Report, fit, predict
@@ -35,10 +35,11 @@ def train(folders: Sequence[Path], out: Path, version: str, plan: Plan, kinds: S
     Writes weldgate.onnx, run.json and CARD.md into `out` and returns the card. Raises LearningError.
     """
     training, held, digest = read_rendered(folders)
-    if set(kinds) != {HOLE, MISSING}:
+    if set(kinds) != set(DEFECTS):
         training, held = only(training, kinds), only(held, kinds)
-        share = plan.shares[OK]
-        plan = replace(plan, shares=(share, (1 - share) * (HOLE in kinds), (1 - share) * (MISSING in kinds)))
+        share, left = plan.shares[OK], sum(plan.shares[kind] for kind in kinds)
+        own = (plan.shares[kind] if kind in kinds else 0.0 for kind in DEFECTS)
+        plan = replace(plan, shares=(share, *((1 - share) * one / left for one in own)))
     torch.manual_seed(plan.seed)
     start = perf_counter()
     network = fit(WeldNet(), training, plan, report)
@@ -90,10 +91,10 @@ def release(
         "provenance": provenance,
         "data_hash": digest,
         "training_crops": len(training),
-        "training_kinds": [training.count(kind) for kind in (OK, HOLE, MISSING)],
+        "training_kinds": [training.count(kind) for kind in (OK, *DEFECTS)],
         "held_out_crops": len(crops),
         "weights": sum(p.numel() for p in network.parameters()),
-        "thresholds": asdict(thresholds),
+        "thresholds": {limit.kind.name: limit.threshold for limit in thresholds.kinds},
         "held_out": figures(class_scores(Classifier(out / "weldgate.onnx"), crops.images), crops.labels, thresholds),
         "novelty_limit": novelty_limit,
         "seconds": seconds,
@@ -104,7 +105,7 @@ def release(
 
 
 def figures(scores: NDArray[np.float64], labels: NDArray[np.int64], thresholds: Thresholds) -> dict[str, float]:
-    """What a card says of scores (N, 3) against labels (N,)."""
+    """What a card says of scores (N, classes) against labels (N,)."""
     if not len(labels):
         raise LearningError("no crops to judge")
     found = count(refused(scores, thresholds), labels != OK)

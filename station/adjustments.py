@@ -9,6 +9,8 @@ from typing import Any, TypeGuard
 from station.durable import sync_folder, write_durable
 from station.errors import SettingsError
 from station.filelock import FileLock
+from station.renamed_settings import with_new_names
+from station.settings import merged
 
 SECTIONS = ("weld", "quality", "model")
 
@@ -29,7 +31,7 @@ def read(settings: Path) -> dict[str, Any]:
         raise SettingsError(f"{path}: cannot be read ({error}); restore it, or remove it to go back to the settings file") from None
     if not _is_ours(found):
         raise SettingsError(f"{path}: is not what the station writes; remove it to go back to the settings file")
-    return found
+    return with_new_names(found)
 
 
 def _is_ours(found: object) -> TypeGuard[dict[str, Any]]:
@@ -43,13 +45,23 @@ def _is_ours(found: object) -> TypeGuard[dict[str, Any]]:
 
 
 def words(settings: Path) -> list[str]:
-    """What was changed, one line a value, as model.hole_threshold = 0.5 (recipe 1). Raises SettingsError."""
+    """What was changed, one line a value, as model.limits.hole.threshold = 0.5 (recipe 1). Raises SettingsError."""
     found = read(settings)
     lines = [f"camera.{key} = {value}" for key, value in found.get("camera", {}).items()]
     for number, sections in found.get("recipes", {}).items():
         for section, values in sections.items():
-            lines += [f"{section}.{key} = {value} (recipe {number})" for key, value in values.items()]
+            lines += [f"{section}.{key} = {value} (recipe {number})" for key, value in _leaves(values)]
     return lines
+
+
+def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
+    """Yield a section's values, the limits of each kind of defect by their dotted keys."""
+    for key, value in values.items():
+        if key == "limits" and isinstance(value, Mapping):
+            for kind, own in value.items():
+                yield from ((f"limits.{kind}.{name}", limit) for name, limit in dict(own).items())
+        else:
+            yield key, value
 
 
 def laid_over(raw: dict[str, Any], settings: Path) -> dict[str, Any]:
@@ -62,7 +74,7 @@ def laid_over(raw: dict[str, Any], settings: Path) -> dict[str, Any]:
         recipes = dict(answer.get("recipes", {}))
         recipe = dict(recipes.get(number, {}))
         for section, values in sections.items():
-            recipe[section] = {**recipe.get(section, {}), **values}
+            recipe[section] = merged(recipe.get(section, {}), values)
         answer["recipes"] = {**recipes, number: recipe}
     return answer
 
@@ -82,7 +94,7 @@ def editing(settings: Path) -> Iterator[None]:
 
 
 def at(changes: Mapping[str, Any], place: Sequence[str]) -> object:
-    """The value at ("recipes", "1", "model", "hole_threshold"), or None."""
+    """The value at ("recipes", "1", "model", "limits", "hole", "threshold"), or None."""
     found: Any = changes
     for name in place:
         found = found.get(name) if isinstance(found, Mapping) else None

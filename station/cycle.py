@@ -14,7 +14,8 @@ from station.answer import answer
 from station.archive.writer import Archive
 from station.camera.reconnecting import ReconnectingCamera
 from station.condition import Seen, alarms, health
-from station.domain import Frame, Inspection, Origin, Purpose, Reason, Timing
+from station.defects import Reason
+from station.domain import Frame, Inspection, Origin, Purpose, Timing
 from station.errors import LineError, WeldgateError
 from station.events import PartEvent, StatusEvent
 from station.listener import Listener
@@ -269,7 +270,7 @@ class Cycle:
     def _decided(self, record: Record) -> tuple[tuple[bool, ...], bool]:
         """Which segments are refused, and whether the picture is unlike all training."""
         inspector = self._loaded.inspector
-        return inspector.refused(record.inspection), inspector.is_novel(record.inspection)
+        return record.inspection.nok, inspector.is_novel(record.inspection)
 
     def _tell(self, frame: Frame | None, event: PartEvent) -> None:
         self._listener.event(event)

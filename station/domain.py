@@ -4,12 +4,15 @@ Pixels: (x, y), the centre of the image's top left pixel at (0, 0), y down. Angl
 in the image. Arrays: (row, column).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+
+from station.defects import DefectKind, Reason
 
 Image = NDArray[np.uint8]
 
@@ -44,27 +47,6 @@ class Origin(StrEnum):
     CAMERA = "camera"
     SIMULATED = "simulated"
     REPLAY = "replay"
-
-
-class Reason(StrEnum):
-    """Why a part is not OK, in words that settings, records, registers and window share."""
-
-    HOLE = "hole"
-    MISSING_WELD = "missing weld"
-    NO_WELD_FOUND = "no weld found"
-    WELD_OUT_OF_VIEW = "weld not wholly in view"
-    WRONG_SIZE = "frame has the wrong size"
-    INCOMPLETE_FRAME = "frame incompletely grabbed"
-    TOO_DARK = "image too dark"
-    TOO_BRIGHT = "image too bright"
-    BLURRED = "image blurred"
-    CAMERA_LOST = "camera lost"
-    NO_FRAME = "no frame in time"
-    DEADLINE = "deadline missed"
-    MODEL_FAILED = "classifier failed"
-    RECORD_FAILED = "record could not be written"
-    ABORTED = "aborted by the PLC"
-    INTERNAL = "internal error"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,15 +87,14 @@ class Quality:
 
 @dataclass(frozen=True, slots=True)
 class SegmentScores:
-    """Probabilities of one segment; they add up to 1."""
+    """Probabilities of one segment: OK, and each kind of defect that the classifier knows. They add up to 1."""
 
     ok: float
-    hole: float
-    missing_weld: float
+    defects: Mapping[DefectKind, float]
 
     @property
     def nok(self) -> float:
-        """Probability of any defect."""
+        """Probability of the segment being NOK, whatever the kind of defect."""
         return 1.0 - self.ok
 
 
@@ -154,14 +135,24 @@ class Inspection:
     scores: tuple[SegmentScores, ...] = ()
     findings: tuple[Finding, ...] = ()
     timing: Timing = field(default_factory=Timing)
+    rejected: tuple[Reason | None, ...] = ()
+    """Kind of defect for which each of the 21 segments is rejected, None for the others; empty if none was judged."""
     novelty: float | None = None
     """Distance of the look of the part's crops to that of the training images; about 1 for these."""
     look: tuple[float, ...] = ()
     """What the part looks like, whatever it shows: mean over its crops, of mean 0 and covariance 1 over the training crops."""
 
     def __post_init__(self) -> None:
-        if self.verdict is Verdict.OK and (len(self.scores) != SEGMENTS or self.ring is None or self.reason is not None):
-            raise ValueError("OK needs a ring, 21 judged segments and no reason against it")
+        judged = len(self.scores) == SEGMENTS and self.ring is not None
+        if self.verdict is Verdict.OK and not (judged and self.reason is None and not any(self.rejected)):
+            raise ValueError("OK needs a ring, 21 judged segments, none of them rejected, and no reason against it")
+        if len(self.rejected) != len(self.scores):
+            raise ValueError(f"{len(self.scores)} scores with {len(self.rejected)} decisions on them")
+
+    @property
+    def nok(self) -> tuple[bool, ...]:
+        """True for each of the 21 segments that is rejected; empty if none was judged."""
+        return tuple(kind is not None for kind in self.rejected)
 
     @staticmethod
     def error(reason: Reason, ring: Ring | None = None, quality: Quality | None = None, timing: Timing | None = None) -> "Inspection":

@@ -4,11 +4,12 @@ from time import perf_counter
 
 import numpy as np
 
-from station.classify.decision import findings, mean_of, near_threshold, refused_kinds
+from station.classify.decision import findings, mean_of, near_threshold, rejected_kinds
 from station.classify.drift import read_reference
 from station.classify.onnx import LOOK, Classifier, RingNetwork
-from station.classify.thresholds import Thresholds
-from station.domain import Image, Inspection, Reason, Ring, SegmentScores, Timing, Verdict
+from station.classify.thresholds import in_use
+from station.defects import Reason
+from station.domain import Image, Inspection, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
 from station.settings import ModelSettings, QualitySettings, WeldSettings
 from station.vision.locate import Expected, locate
@@ -25,7 +26,7 @@ class Inspector:
     def __init__(
         self, ring_network: RingNetwork, classifier: Classifier, weld: WeldSettings, quality: QualitySettings, model: ModelSettings
     ) -> None:
-        """Raises ModelError if the settings name a reference that does not fit."""
+        """Raises ModelError if the settings name a reference that does not fit, SettingsError if a limit is of no kind the model knows."""
         self._ring_network = ring_network
         self.classifier = classifier
         self._weld = weld
@@ -35,21 +36,11 @@ class Inspector:
         self.card = card = classifier.card
         path = model.reference_path
         self.reference = None if path is None else read_reference(path, card.file_hash, LOOK)
-        self.thresholds = Thresholds(
-            hole=card.hole_threshold if model.hole_threshold is None else model.hole_threshold,
-            missing_weld=card.missing_threshold if model.missing_threshold is None else model.missing_threshold,
-            segments=tuple(sorted(model.segment_thresholds.items())),
-            hole_min_mm=model.hole_min_mm,
-            missing_min_mm=model.missing_min_mm,
-        )
+        self.thresholds = in_use(card.thresholds, model.limits, model.segment_thresholds)
 
     def locate(self, image: Image) -> Ring:
         """Ring of the weld in `image` (H, W) uint8. Raises LocateError, ModelError."""
         return locate(image, self._expected, self._ring_network)
-
-    def refused(self, judged: Inspection) -> tuple[bool, ...]:
-        """Whether each segment is refused; empty if none was judged."""
-        return tuple(kind is not None for kind in refused_kinds(judged.scores, judged.findings, self.thresholds))
 
     def is_novel(self, judged: Inspection) -> bool:
         """Whether a part looks unlike all training images, so that its verdict deserves less trust."""
@@ -78,16 +69,18 @@ class Inspector:
             scores = self._look_twice(crops, judged.scores)
         except ModelError:
             return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
-        found = findings(scores, judged.maps, self.thresholds, ring, self._weld.um_per_px)
-        refused = {kind for kind in refused_kinds(scores, found, self.thresholds) if kind is not None}
-        worst = max((f for f in found if f.kind in refused), key=lambda f: f.score, default=None)
+        found = findings(scores, judged.maps, judged.mapped, self.thresholds, ring, self._weld.um_per_px)
+        rejected = rejected_kinds(scores, found, self.thresholds)
+        reasons = sorted({kind for kind in rejected if kind is not None}, key=lambda kind: kind.code)
+        worst = max((f for f in found if f.kind in reasons), key=lambda f: f.score, default=None)
         return Inspection(
-            verdict=Verdict.NOK if refused else Verdict.OK,
-            reason=next(iter(refused), None) if worst is None else worst.kind,
+            verdict=Verdict.NOK if reasons else Verdict.OK,
+            reason=next(iter(reasons), None) if worst is None else worst.kind,
             ring=ring,
             quality=quality,
             scores=scores,
             findings=found,
+            rejected=rejected,
             timing=Timing(grab_ms, locate_ms, unwrap_ms, _ms(start)),
             novelty=judged.novelty,
             look=tuple(np.round(judged.looks.mean(axis=0, dtype=np.float64), LOOK_DECIMALS).tolist()),
@@ -95,7 +88,7 @@ class Inspector:
 
     def _look_twice(self, crops: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:
         """Segments near their threshold are seen again in the mirror: a mirrored weld is a weld, with the same defects."""
-        near = [i for i, s in enumerate(scores) if near_threshold(s, self.thresholds.of(i))]
+        near = [i for i, s in enumerate(scores) if near_threshold(s, self.thresholds.of_segment(i))]
         if not near:
             return scores
         again = crops[near]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from station import __version__
 from station.classify.onnx import Classifier, RingNetwork
+from station.classify.thresholds import Thresholds
 from station.inspection import Inspector
 from station.records import Provenance
 from station.selftest import SelfTest
@@ -40,7 +41,7 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         settings.model_dump_json(include={"camera", "weld", "quality"}),
         ring_network.file_hash,
         classifier.card.file_hash,
-        str(inspector.thresholds),
+        *_words_of(inspector.thresholds),
     )
     provenance = Provenance(
         software=__version__,
@@ -48,11 +49,13 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         model_hash=classifier.card.file_hash,
         ring_model_hash=ring_network.file_hash,
         config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
-        hole_threshold=inspector.thresholds.hole,
-        missing_threshold=inspector.thresholds.missing_weld,
-        segment_thresholds=inspector.thresholds.segments,
-        hole_min_mm=inspector.thresholds.hole_min_mm,
-        missing_min_mm=inspector.thresholds.missing_min_mm,
+        thresholds=inspector.thresholds,
         limits_hash=hashlib.sha256(settings.model_dump_json(include={"weld", "quality"}).encode()).hexdigest(),
     )
     return inspector, provenance
+
+
+def _words_of(thresholds: Thresholds) -> list[str]:
+    """Write out all limits: whatever changes them changes CONFIG_CRC."""
+    words = [f"{limit.kind.name} {limit.threshold!r} {limit.min_mm!r}" for limit in thresholds.kinds]
+    return words + [f"{number} {own!r}" for number, own in thresholds.segments]

@@ -4,7 +4,8 @@ import logging
 from datetime import UTC, datetime
 
 from station.archive.writer import Archive, Pending
-from station.domain import Inspection, Reason
+from station.defects import Reason
+from station.domain import Inspection
 from station.errors import RecordError
 from station.records import Part, Provenance, Record
 

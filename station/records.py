@@ -1,18 +1,18 @@
-"""One inspection on disk. Version 2; version 1 lacks look, purpose, recipe and chain, and is read.
+"""One inspection on disk. Version 3; versions 1 and 2 are read (`station.record_versions`).
 
 A record is `YYYY-MM-DD/NNNNNNNN.png`, the frame as grabbed, lossless, and `NNNNNNNN.json`, all that led to its verdict;
 the index is `index.sqlite` beside the day folders. Readable with any image viewer and any SQLite tool.
 """
 
+import json
 from dataclasses import dataclass
 from datetime import datetime
 
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from station.classify.thresholds import Thresholds
 from station.domain import Inspection, Origin, Purpose, Verdict
-
-FORMAT = 2
+from station.record_versions import FORMAT, OLD, upgraded
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,30 +24,20 @@ class Provenance:
     model_hash: str
     ring_model_hash: str
     config_crc: int
-    hole_threshold: float
-    missing_threshold: float
+    thresholds: Thresholds
+    """All limits of the decision."""
     recipe: int = 1
     limits_hash: str = ""
     """SHA-256 of the settings of weld and quality gate: what else a verdict depends on."""
-    segment_thresholds: tuple[tuple[int, float], ...] = ()
-    """Of segments with a limit of their own."""
-    hole_min_mm: float = 0.0
-    missing_min_mm: float = 0.0
 
     @property
     def limits(self) -> str:
-        """The same in words."""
-        words = [f"hole {self.hole_threshold:g}", f"missing weld {self.missing_threshold:g}"]
-        words += [f"segment {number}: {limit:g}" for number, limit in self.segment_thresholds]
-        words += [f"holes below {self.hole_min_mm:g} mm tolerated"] * (self.hole_min_mm > 0)
-        words += [f"missing weld below {self.missing_min_mm:g} mm tolerated"] * (self.missing_min_mm > 0)
+        """The thresholds and minimum lengths in words."""
+        kinds = self.thresholds.kinds
+        words = [f"{limit.kind.reason} {limit.threshold:g}" for limit in kinds]
+        words += [f"segment {number}: {limit:g}" for number, limit in self.thresholds.segments]
+        words += [f"{limit.kind.reason} below {limit.min_mm:g} mm tolerated" for limit in kinds if limit.min_mm > 0]
         return ", ".join(words)
-
-    @property
-    def thresholds(self) -> Thresholds:
-        """All limits of the decision."""
-        segments, hole_mm, missing_mm = self.segment_thresholds, self.hole_min_mm, self.missing_min_mm
-        return Thresholds(self.hole_threshold, self.missing_threshold, segments, hole_mm, missing_mm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +80,19 @@ _ADAPTER = TypeAdapter(Record)
 
 
 def to_json(record: Record) -> bytes:
-    """The record's JSON text."""
+    """Return the record's JSON text."""
     return _ADAPTER.dump_json(record, indent=1)
 
 
 def from_json(text: bytes) -> Record:
-    """A record from its JSON text. Raises pydantic.ValidationError."""
-    return _ADAPTER.validate_json(text)
+    """Return a record from its JSON text, also of an older version. Raises pydantic.ValidationError."""
+    try:
+        return _ADAPTER.validate_json(text)
+    except ValidationError as error:
+        try:
+            raw = json.loads(text)
+            if raw.get("format", 1) not in OLD:
+                raise error
+            return _ADAPTER.validate_json(json.dumps(upgraded(raw)))
+        except (ValueError, KeyError, TypeError, AttributeError):
+            raise error from None

@@ -1,16 +1,19 @@
 """station.toml as checked values."""
 
+from collections.abc import Mapping
 from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
+from station.defects import kind_named
 from station.domain import Origin
 from station.errors import SettingsError
 
 Port = Annotated[int, Field(ge=1, le=65535)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
+KindName = Annotated[str, AfterValidator(lambda name: kind_named(name).name)]
 
 
 class Section(BaseModel):
@@ -70,8 +73,17 @@ class QualitySettings(Section):
     min_sharpness: float = Field(default=0.01, ge=0)
 
 
+class LimitSettings(Section):
+    """Limits of one kind of defect."""
+
+    threshold: Share | None = None
+    """Score from which a segment is rejected; None: as the classifier file says."""
+    min_mm: float = Field(default=0.0, ge=0, le=5)
+    """Shorter findings are reported but tolerated, if they could be measured."""
+
+
 class ModelSettings(Section):
-    """The networks; without thresholds the classifier file's own are used."""
+    """The networks, and the limits of the decision."""
 
     path: Path = Path("weldgate.onnx")
     ring_path: Path = Path("ring.onnx")
@@ -84,13 +96,10 @@ class ModelSettings(Section):
     """What must be found in it at the start."""
     self_test_s: float = Field(default=10.0, ge=0.5, le=3600)
     """Idle time between two self-tests."""
-    hole_threshold: Share | None = None
-    missing_threshold: Share | None = None
+    limits: dict[KindName, LimitSettings] = {}
+    """By the name of the kind of defect."""
     segment_thresholds: dict[Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]] = {}
-    """Of segments with a limit of their own, for either defect."""
-    hole_min_mm: float = Field(default=0.0, ge=0, le=5)
-    """Measured findings shorter than this are told, and tolerated."""
-    missing_min_mm: float = Field(default=0.0, ge=0, le=5)
+    """Thresholds of single segments, for any kind of defect."""
 
     @model_validator(mode="after")
     def _self_test_is_whole(self) -> "ModelSettings":
@@ -257,5 +266,19 @@ def for_recipe(settings: Settings, number: int) -> Settings:
         raise SettingsError(f"there is no recipe {number}; recipes: {', '.join(map(str, sorted({1, *settings.recipes})))}")
     sections: dict[str, Section] = {}
     for name, section in (("weld", settings.weld), ("quality", settings.quality), ("model", settings.model)):
-        sections[name] = type(section).model_validate({**section.model_dump(), **getattr(changes, name)})
+        sections[name] = type(section).model_validate(merged(section.model_dump(), getattr(changes, name)))
     return settings.model_copy(update=sections)
+
+
+def merged(values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a section's values with changes laid over them; the limits of each kind of defect key by key."""
+    answer = {**values, **changes}
+    before, after = values.get("limits"), changes.get("limits")
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        kinds = {name: _over(before.get(name), own) for name, own in after.items()}
+        answer["limits"] = {**before, **kinds}
+    return answer
+
+
+def _over(before: object, after: object) -> object:
+    return {**before, **after} if isinstance(before, Mapping) and isinstance(after, Mapping) else after

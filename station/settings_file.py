@@ -9,6 +9,7 @@ from pydantic_core import ErrorDetails
 
 from station.adjustments import laid_over, path_of
 from station.errors import SettingsError
+from station.renamed_settings import with_new_names
 from station.settings import ReplaySettings, Settings, for_recipe
 
 
@@ -23,6 +24,10 @@ def load(path: Path) -> Settings:
         raise SettingsError(f"{path}: cannot be read: {error}") from None
     except tomllib.TOMLDecodeError as error:
         raise SettingsError(f"{path}: not valid TOML: {error}") from None
+    try:
+        raw = with_new_names(raw)
+    except SettingsError as error:
+        raise SettingsError(f"{path}: {error}") from None
     raw = laid_over(raw, path)
     try:
         settings = Settings.model_validate(raw)

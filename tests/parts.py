@@ -6,7 +6,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from station.domain import SEGMENTS, Inspection, Origin, Quality, Reason, Ring, SegmentScores, Timing, Verdict
+from station.classify.thresholds import Limit, Thresholds
+from station.defects import KINDS, Reason
+from station.domain import SEGMENTS, Inspection, Origin, Quality, Ring, SegmentScores, Timing, Verdict
 from station.records import Provenance, Record
 
 FRAMES = Path(__file__).resolve().parent.parent / "deploy" / "frames"
@@ -24,7 +26,19 @@ def label_with(truth: str) -> dict[str, Any]:
 
 def good_scores() -> tuple[SegmentScores, ...]:
     """21 clean segments."""
-    return (SegmentScores(0.99, 0.005, 0.005),) * SEGMENTS
+    return (scores_of(0.99, 0.005, 0.005),) * SEGMENTS
+
+
+def scores_of(ok: float, hole: float, missing_weld: float) -> SegmentScores:
+    """Scores of one segment; any further kinds of defect have none."""
+    return SegmentScores(ok, {**dict.fromkeys(KINDS, 0.0), KINDS[0]: hole, KINDS[1]: missing_weld})
+
+
+def thresholds(
+    hole: float, missing_weld: float, segments: tuple[tuple[int, float], ...] = (), hole_mm: float = 0.0, missing_mm: float = 0.0
+) -> Thresholds:
+    """Limits of holes and missing weld."""
+    return Thresholds((Limit(KINDS[0], hole, hole_mm), Limit(KINDS[1], missing_weld, missing_mm)), segments)
 
 
 def ok_inspection() -> Inspection:
@@ -35,20 +49,22 @@ def ok_inspection() -> Inspection:
         ring=Ring(2100.0, 1080.0, 428.0, 1.0),
         quality=Quality(100.0, 0.0, 0.0, 0.1),
         scores=good_scores(),
+        rejected=(None,) * SEGMENTS,
         timing=Timing(12.0, 30.0, 3.0, 9.0),
     )
 
 
 def nok_inspection() -> Inspection:
     """A part with a hole in segment 3."""
-    scores = list(good_scores())
-    scores[3] = SegmentScores(0.1, 0.9, 0.0)
-    return replace(ok_inspection(), verdict=Verdict.NOK, reason=Reason.HOLE, scores=tuple(scores))
+    bad = list(good_scores())
+    bad[3] = scores_of(0.1, 0.9, 0.0)
+    rejected = tuple(Reason.HOLE if i == 3 else None for i in range(SEGMENTS))
+    return replace(ok_inspection(), verdict=Verdict.NOK, reason=Reason.HOLE, scores=tuple(bad), rejected=rejected)
 
 
 def provenance() -> Provenance:
     """Some software and model."""
-    return Provenance("0.1.0", "1", "abc", "def", 0x1234, 0.5, 0.5)
+    return Provenance("0.1.0", "1", "abc", "def", 0x1234, thresholds(0.5, 0.5))
 
 
 def record(inspection: Inspection, number: int = 1, origin: Origin = Origin.SIMULATED) -> Record:

@@ -12,13 +12,14 @@ from typing import Any
 from station.archive.decided import defect_kinds
 from station.archive.reader import Listed
 from station.archive.review import Opinion, reviews
-from station.domain import SEGMENTS, Inspection, Reason
+from station.defects import KINDS, DefectKind, kind_of
+from station.domain import SEGMENTS, Inspection
 from station.errors import ImageError, LocateError, RecordError
 from station.imagefile import encode_png, read_image
 from station.records import Record
 from station.vision.unwrap import segments, unwrap
 
-CLASS_FOLDERS = {None: "ok", Reason.HOLE: "hole", Reason.MISSING_WELD: "missing_weld"}
+OK_FOLDER = "ok"
 SEPARATOR, ADDITIONAL = "\x0f", "\x14"
 """Q-DAS ASCII transfer format: between characteristics, and between a value and what belongs to it."""
 
@@ -111,7 +112,7 @@ class _Stopped(Exception):
     """Nobody wants it any longer."""
 
 
-Kinds = dict[int, Reason | None]
+Kinds = dict[int, DefectKind | None]
 """What to call the crops of a part, by the number of the segment; those of other segments are left out."""
 
 
@@ -134,7 +135,7 @@ def _reviewed(entries: list[Listed], folder: Path, target: Path, going: Callable
         return [e for e in entries if e.row.inspection_id in known and known[e.row.inspection_id].agreed is opinion]
 
     def as_seen(record: Record) -> Kinds:
-        return {**known[record.inspection_id].agreed_marks}
+        return {number: kind_of(reason) for number, reason in known[record.inspection_id].agreed_marks.items()}
 
     missed = []
     for entry in said(Opinion.MISSED):
@@ -149,8 +150,8 @@ def _reviewed(entries: list[Listed], folder: Path, target: Path, going: Callable
 def _dataset(
     entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool], kinds: Callable[[Record], Kinds] = _as_judged
 ) -> Iterator[tuple[Path, str]]:
-    """ok, hole, missing_weld: crops by what the station found, for people to correct before anything is trained on them."""
-    for name in CLASS_FOLDERS.values():
+    """A folder each for ok and the kinds of defect: crops by what the station found, for people to correct before training."""
+    for name in (OK_FOLDER, *(kind.name for kind in KINDS)):
         (target / name).mkdir(parents=True, exist_ok=True)
     for entry in entries:
         record = entry.record
@@ -168,7 +169,8 @@ def _dataset(
             continue
         crops = segments(strip)
         for number, kind in kinds(record).items():
-            (target / CLASS_FOLDERS[kind] / f"{record.inspection_id:08d}_{number:02d}.png").write_bytes(encode_png(crops[number - 1]))
+            name = OK_FOLDER if kind is None else kind.name
+            (target / name / f"{record.inspection_id:08d}_{number:02d}.png").write_bytes(encode_png(crops[number - 1]))
 
 
 def _dfq(target: Path, entries: list[Listed]) -> None:
@@ -177,7 +179,7 @@ def _dfq(target: Path, entries: list[Listed]) -> None:
     lines = [f"K0100 {SEGMENTS}", "K1001 weldgate", "K1002 circular laser weld"]
     for i in range(1, SEGMENTS + 1):
         lines += [f"K2001/{i} {i}", f"K2002/{i} score of NOK, segment {i}", f"K2004/{i} 0", f"K2022/{i} 4", f"K2110/{i} 0"]
-        lines += [f"K2111/{i} {judged[0].record.provenance.thresholds.of(i - 1).hole:g}"] if judged and judged[0].record else []
+        lines += [f"K2111/{i} {judged[0].record.provenance.thresholds.of_segment(i - 1).lowest:g}"] if judged and judged[0].record else []
     for entry in judged:
         if entry.record is not None:
             when = _qdas_time(entry.record.grabbed_at)

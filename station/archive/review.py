@@ -6,7 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from station.archive.journal import Kind, append, entries
-from station.domain import Reason
+from station.defects import Reason
 from station.errors import LoginError
 
 

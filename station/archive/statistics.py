@@ -5,7 +5,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
-from station.archive.decided import segment_kinds
 from station.domain import SEGMENTS, Purpose, Verdict
 from station.records import Record
 
@@ -83,7 +82,7 @@ def summarise(records: Iterable[Record]) -> Summary:
         counts.setdefault(key, Counter())[record.verdict] += 1
         if inspection.reason is not None:
             reasons[str(inspection.reason)] += 1
-        for index, kind in enumerate(segment_kinds(record)):
+        for index, kind in enumerate(inspection.rejected):
             segments[index] += kind is not None
         q = inspection.quality
         points.append(
@@ -99,5 +98,5 @@ def summarise(records: Iterable[Record]) -> Summary:
             )
         )
     groups = (Group(*key, c[Verdict.OK], c[Verdict.NOK], c[Verdict.ERROR]) for key, c in sorted(counts.items(), reverse=True))
-    limits = () if newest is None else (newest.provenance.hole_threshold, newest.provenance.missing_threshold)
+    limits = () if newest is None else tuple(limit.threshold for limit in newest.provenance.thresholds.kinds)
     return Summary(tuple(groups), tuple(reasons.most_common()), tuple(segments), tuple(sorted(points, key=lambda p: p.number)), limits)

@@ -7,9 +7,10 @@ Scores near the old threshold were seen twice (mirrored), others once: close to 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from station.classify.decision import refused_kinds
+from station.classify.decision import rejected_kinds
 from station.classify.thresholds import Thresholds
-from station.domain import Purpose, Reason, Verdict
+from station.defects import Reason
+from station.domain import Purpose, Verdict
 from station.records import Record
 from station.settings import QualitySettings
 from station.vision.quality import gate
@@ -57,7 +58,7 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
             unknown += inspection.reason in QUALITY and not poor
             continue
         looked_at += 1
-        bad = any(refused_kinds(inspection.scores, inspection.findings, thresholds))
+        bad = any(rejected_kinds(inspection.scores, inspection.findings, thresholds))
         after = Verdict.ERROR if poor else Verdict.NOK if bad else Verdict.OK
         if (after is Verdict.OK) == (record.verdict is Verdict.OK):
             continue

@@ -4,7 +4,8 @@ import logging
 import time
 
 from station.camera.port import Camera
-from station.domain import Frame, Reason
+from station.defects import Reason
+from station.domain import Frame
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
 
 log = logging.getLogger("weldgate.camera")

@@ -14,13 +14,19 @@ import onnxruntime as ort
 from numpy.typing import NDArray
 
 from station.classify.extent import CELLS
+from station.classify.thresholds import Limit, Thresholds
+from station.defects import KINDS, DefectKind, kind_named
 from station.domain import SEGMENT_PX, Image, SegmentScores
 from station.errors import ModelError
 from station.vision.polar import COLUMNS, ROWS, SECTORS
 
 Array = NDArray[np.float64]
 
-CLASSES = ("ok", "hole", "missing_weld")
+OK = "ok"
+CLASSES = (OK, *(kind.name for kind in KINDS))
+"""Classes of a network that is trained today, in the order of its probabilities; a file may know fewer."""
+MAPPED = tuple(kind for kind in KINDS if kind.is_mapped)
+"""Kinds of defect of a network that is trained today, in the order of its defect map's channels."""
 LOOK = 192
 """Length of the vector that tells what a crop looks like."""
 METADATA_KEYS = ("weldgate.classes", "weldgate.thresholds", "weldgate.novelty_limit", "weldgate.data_hash", "weldgate.version")
@@ -33,8 +39,8 @@ class ModelCard:
     version: str
     data_hash: str
     """SHA-256 over the training labels and images."""
-    hole_threshold: float
-    missing_threshold: float
+    thresholds: Thresholds
+    """Of the kinds of defect that the network knows."""
     novelty_limit: float
     """Distance of a part to the training images from which it is reported."""
     file_hash: str
@@ -47,7 +53,8 @@ class Judged:
 
     scores: tuple[SegmentScores, ...]
     maps: NDArray[np.float32]
-    """Share of each cell that a hole or a missing weld covers, (K, 2, 32, 32)."""
+    """Share of each cell that a defect covers, (K, C, 32, 32), one channel for each of the C kinds in `mapped`."""
+    mapped: tuple[DefectKind, ...]
     looks: NDArray[np.float32]
     """What each crop looks like (K, 192), of mean 0 and covariance 1 over the training crops."""
 
@@ -97,13 +104,16 @@ class Classifier:
     def __call__(self, crops: Image) -> Judged:
         """Judge crops (K, 128, 128) uint8. Raises ModelError if the answer is not K times finite probabilities."""
         p, maps, looks = self._network.run(("probabilities", "maps", "looks"), {"crops": crops[:, None]})
-        fit = p.shape == (len(crops), 3) and maps.shape == (len(crops), 2, CELLS, CELLS) and looks.shape == (len(crops), LOOK)
-        if not fit:
+        count, kinds = len(crops), [limit.kind for limit in self.card.thresholds.kinds]
+        mapped = tuple(kind for kind in kinds if kind.is_mapped)
+        shapes = ((count, 1 + len(kinds)), (count, len(mapped), CELLS, CELLS), (count, LOOK))
+        if (p.shape, maps.shape, looks.shape) != shapes:
             raise ModelError(f"inference gave no probabilities, maps and looks (shapes {p.shape}, {maps.shape}, {looks.shape})")
         sound = all(((a >= 0) & (a <= 1)).all() for a in (p, maps)) and bool((np.abs(p.sum(axis=1) - 1) <= 1e-3).all())
         if not (sound and np.isfinite(looks).all()):
             raise ModelError("inference gave numbers that are no probabilities")
-        return Judged(tuple(SegmentScores(float(a), float(b), float(c)) for a, b, c in p), maps, looks)
+        scores = (SegmentScores(float(row[0]), dict(zip(kinds, map(float, row[1:]), strict=True))) for row in p)
+        return Judged(tuple(scores), maps, mapped, looks)
 
 
 class RingNetwork:
@@ -152,16 +162,30 @@ def _card(path: Path, network: Network) -> ModelCard:
     if lacking:
         raise ModelError(f"{path}: has no output {', '.join(sorted(lacking))}; make one with weldgate-models train")
     try:
-        classes = tuple(json.loads(metadata["weldgate.classes"]))
-        thresholds = json.loads(metadata["weldgate.thresholds"])
-        hole, gone = float(thresholds["hole"]), float(thresholds["missing_weld"])
+        classes = [str(name) for name in json.loads(metadata["weldgate.classes"])]
+        thresholds = {str(name): float(value) for name, value in json.loads(metadata["weldgate.thresholds"]).items()}
         limit = float(json.loads(metadata["weldgate.novelty_limit"]))
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, AttributeError, TypeError):
         raise ModelError(f"{path}: metadata cannot be read; make it again with weldgate-models train") from None
-    if classes != CLASSES:
-        raise ModelError(f"{path}: classes are {classes}, needed {CLASSES}")
-    if not (0 < hole < 1 and 0 < gone < 1):
-        raise ModelError(f"{path}: thresholds {thresholds} must lie between 0 and 1")
     if not 0 < limit < float("inf"):
         raise ModelError(f"{path}: novelty limit {limit} must be above 0")
-    return ModelCard(metadata["weldgate.version"], metadata["weldgate.data_hash"], hole, gone, limit, network.file_hash)
+    return ModelCard(
+        version=metadata["weldgate.version"],
+        data_hash=metadata["weldgate.data_hash"],
+        thresholds=_thresholds(path, classes, thresholds),
+        novelty_limit=limit,
+        file_hash=network.file_hash,
+    )
+
+
+def _thresholds(path: Path, classes: list[str], thresholds: dict[str, float]) -> Thresholds:
+    """Return the thresholds of a file's kinds of defect in the order of its classes."""
+    if not (len(classes) > 1 and classes[0] == OK and len(set(classes)) == len(classes)):
+        raise ModelError(f"{path}: classes are {classes}, needed {OK} and then kinds of defect; make the model again")
+    try:
+        kinds = [kind_named(name) for name in classes[1:]]
+    except ValueError as error:
+        raise ModelError(f"{path}: {error}; update weldgate, or name another model") from None
+    if set(thresholds) != set(classes[1:]) or not all(0 < value < 1 for value in thresholds.values()):
+        raise ModelError(f"{path}: thresholds {thresholds} must lie between 0 and 1, one for each of {classes[1:]}")
+    return Thresholds(tuple(Limit(kind, thresholds[kind.name]) for kind in kinds))

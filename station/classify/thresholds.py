@@ -1,26 +1,62 @@
-"""Limits of the decision."""
+"""Limits of the decision: from which score on, and from which length on, a kind of defect makes a segment NOK."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
-from station.domain import Reason
+from station.defects import DefectKind
+from station.errors import SettingsError
+from station.settings import LimitSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """Limits of one kind of defect."""
+
+    kind: DefectKind
+    threshold: float
+    """Score from which a segment is rejected."""
+    min_mm: float = 0.0
+    """Shorter findings are reported but tolerated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
-    """A segment is NOK from these probabilities on; findings shorter than their kind's least length are told, and tolerated."""
+    """Limits of all kinds of defect that the classifier knows, in the order of its classes."""
 
-    hole: float
-    missing_weld: float
+    kinds: tuple[Limit, ...]
     segments: tuple[tuple[int, float], ...] = ()
-    """Number, 1 to 21, and probability of either defect, of segments with a limit of their own."""
-    hole_min_mm: float = 0.0
-    missing_min_mm: float = 0.0
+    """Number (1 to 21) and threshold, for any kind of defect, of segments with a threshold of their own."""
 
-    def of(self, index: int) -> "Thresholds":
-        """As they are for one segment, 0 to 20."""
+    def of_segment(self, index: int) -> "Thresholds":
+        """Return the limits that apply to one segment, 0 to 20."""
         own = dict(self.segments).get(index + 1)
-        return self if own is None else Thresholds(own, own)
+        return self if own is None else Thresholds(tuple(replace(limit, threshold=own) for limit in self.kinds))
 
-    def least_mm(self, kind: Reason) -> float:
-        """Of a kind."""
-        return self.hole_min_mm if kind is Reason.HOLE else self.missing_min_mm
+    def of(self, kind: DefectKind) -> Limit:
+        """Return the limits of one kind of defect. Raises KeyError if the classifier does not know it."""
+        for limit in self.kinds:
+            if limit.kind == kind:
+                return limit
+        raise KeyError(kind.name)
+
+    @property
+    def lowest(self) -> float:
+        """The lowest threshold of all kinds."""
+        return min(limit.threshold for limit in self.kinds)
+
+
+def in_use(of_model: Thresholds, limits: Mapping[str, LimitSettings], segments: Mapping[int, float]) -> Thresholds:
+    """Return the limits of a model file with those of the settings laid over them.
+
+    Raises SettingsError if the settings limit a kind of defect that the model does not know.
+    """
+    unknown = sorted(set(limits) - {limit.kind.name for limit in of_model.kinds})
+    if unknown:
+        known = ", ".join(limit.kind.name for limit in of_model.kinds)
+        raise SettingsError(f"model.limits.{unknown[0]}: the classifier does not know this kind of defect; it knows {known}")
+    kinds = []
+    for limit in of_model.kinds:
+        own = limits.get(limit.kind.name, LimitSettings())
+        threshold = limit.threshold if own.threshold is None else own.threshold
+        kinds.append(Limit(limit.kind, threshold, own.min_mm))
+    return Thresholds(tuple(kinds), tuple(sorted(segments.items())))

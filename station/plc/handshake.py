@@ -14,7 +14,8 @@ of any other trigger is refused.
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from station.domain import SEGMENTS, Reason
+from station.defects import Reason
+from station.domain import SEGMENTS
 from station.plc.port import Command, Health, Result, Trigger
 from station.plc.registers import REASON_CODES, REFUSED, CommandCode, Control, Flags, Offline, VerdictCode
 

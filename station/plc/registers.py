@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from enum import IntEnum, IntFlag
 from typing import Literal
 
-from station.domain import SEGMENTS, Reason
+from station.defects import Reason
+from station.domain import SEGMENTS
 
 Kind = Literal["u16", "u32", "f32", "ascii"]
 Value = int | float | str | tuple[int, ...]
@@ -104,7 +105,7 @@ REFUSED = 0xFFFF
 """CMD_ECHO of a command that was not done."""
 ERROR_NOT_JUDGED = 0x1000
 """ERROR_CODE is this and REASON when a part could not be judged."""
-REASON_CODES = {reason: code for code, reason in enumerate(Reason, start=1)}
+REASON_CODES = {reason: reason.code for reason in Reason}
 """Values of REASON; 0: none."""
 
 

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
-from station.archive.decided import segment_kinds
 from station.archive.reader import Listed
 from station.domain import SEGMENT_DEG, Purpose, Verdict
 from station.errors import RecordError
@@ -97,7 +96,7 @@ def _summary(records: Sequence[Record], not_shown: int) -> str:
 
 def _found(records: Sequence[Record]) -> str:
     reasons = Counter(str(record.inspection.reason) for record in records if record.inspection.reason is not None)
-    judged = [[kind is not None for kind in segment_kinds(record)] for record in records if record.inspection.scores]
+    judged = [[kind is not None for kind in record.inspection.rejected] for record in records if record.inspection.scores]
     if not reasons:
         return "<h2>Findings</h2><p>None.</p>"
     return f"<h2>Findings by kind and angle</h2><div class=row>{bars(list(reasons.items()))}{clock_face(angle_counts(judged))}</div>"
@@ -107,7 +106,7 @@ def _trends(records: Sequence[Record]) -> str:
     records = records[:: -(-len(records) // DOTS)]
     bad = [record.verdict is not Verdict.OK for record in records]
     inspections = [record.inspection for record in records]
-    limit = min(records[-1].provenance.hole_threshold, records[-1].provenance.missing_threshold)
+    limit = records[-1].provenance.thresholds.lowest
     figures = (
         trend([max((s.nok for s in i.scores), default=None) for i in inspections], bad, "worst score of NOK", limit),
         trend([None if i.quality is None else i.quality.mean_dn for i in inspections], bad, "brightness, grey levels"),
@@ -136,7 +135,7 @@ def _figure(record: Record, folder: Path) -> str:
 
 
 def _strip(record: Record, folder: Path) -> str:
-    refused = ((i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i, kind in enumerate(segment_kinds(record)) if kind is not None)
+    refused = ((i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i, kind in enumerate(record.inspection.rejected) if kind is not None)
     return strip(None if record.frame_file is None else folder / record.frame_file, record.inspection.ring, refused)
 
 

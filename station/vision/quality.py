@@ -3,7 +3,8 @@
 import cv2
 import numpy as np
 
-from station.domain import Image, Quality, Reason
+from station.defects import Reason
+from station.domain import Image, Quality
 from station.settings import QualitySettings
 
 DARK_DN = 2

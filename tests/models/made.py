@@ -8,14 +8,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import Crops, coarse, empty_maps
+from models.crops import CHANNELS, Crops, coarse, empty_maps
 from station.classify.onnx import CLASSES
 
 KINDS = CLASSES
+HOLE, MISSING = CLASSES.index("hole"), CLASSES.index("missing_weld")
 
 
 def crop(kind: str, rng: np.random.Generator) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """A striped band with nothing, a black disc, or a black line right through; and the mask of it."""
+    """A striped band with nothing, a black disc (hole), a line along it (missing weld) or at a slant (others), and its mask."""
     rows, columns = np.indices((128, 128))
     image = 120 + 25 * np.sin(columns / rng.uniform(3, 6) + rng.uniform(0, 6)) + rng.normal(0, 4, (128, 128))
     mask = np.zeros((128, 128), bool)
@@ -24,6 +25,8 @@ def crop(kind: str, rng: np.random.Generator) -> tuple[NDArray[np.uint8], NDArra
         mask = np.hypot(rows - y, columns - x) < r
     elif kind == "missing_weld":
         mask = np.abs(rows - rng.uniform(56, 72)) < 4
+    elif kind != "ok":
+        mask = np.abs(rows - (2 + CLASSES.index(kind)) * (columns - rng.uniform(40, 88))) < 12
     image[mask] = 10
     return np.asarray(np.clip(image, 0, 255), np.uint8), mask
 
@@ -31,14 +34,14 @@ def crop(kind: str, rng: np.random.Generator) -> tuple[NDArray[np.uint8], NDArra
 def crops(count: int, seed: int = 0, part_crops: int = 9) -> Crops:
     """`count` crops, their kinds in turn."""
     rng = np.random.default_rng(seed)
-    drawn = [crop(KINDS[i % 3], rng) for i in range(count)]
+    drawn = [crop(KINDS[i % len(KINDS)], rng) for i in range(count)]
     maps = empty_maps(count)
     for i, (_, mask) in enumerate(drawn):
-        if i % 3:
-            maps[i, i % 3 - 1] = coarse(mask)
+        if KINDS[i % len(KINDS)] in CHANNELS:
+            maps[i, CHANNELS.index(KINDS[i % len(KINDS)])] = coarse(mask)
     names = np.array([str(i) for i in range(count)])
     parts = np.array([f"{seed}:{i // part_crops}" for i in range(count)])
-    return Crops(np.stack([c for c, _ in drawn]), np.arange(count) % 3, maps, np.ones(count, bool), parts, names)
+    return Crops(np.stack([c for c, _ in drawn]), np.arange(count) % len(KINDS), maps, np.ones(count, bool), parts, names)
 
 
 def dataset(folder: Path, count: int = 36) -> Path:
@@ -46,7 +49,7 @@ def dataset(folder: Path, count: int = 36) -> Path:
     rng = np.random.default_rng(3)
     entries, coco = [], {split: _empty() for split in ("train", "val")}
     for number in range(count):
-        kind, split = KINDS[number % 3], "val" if number % 9 > 5 else "train"
+        kind, split = KINDS[number % len(KINDS)], "val" if number % 9 > 5 else "train"
         image, mask = crop(kind, rng)
         name = f"images/{split}/{kind}/{number:06d}.png"
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -64,7 +67,7 @@ def dataset(folder: Path, count: int = 36) -> Path:
 
 
 def _empty() -> dict[str, list[dict[str, object]]]:
-    categories: list[dict[str, object]] = [{"id": 1, "name": "hole"}, {"id": 2, "name": "missing_weld"}]
+    categories: list[dict[str, object]] = [{"id": i, "name": name} for i, name in enumerate(CHANNELS, start=1)]
     return {"images": [], "annotations": [], "categories": categories}
 
 
@@ -77,7 +80,7 @@ def _annotate(coco: dict[str, list[dict[str, object]]], name: str, kind: str, ma
             {
                 "id": len(coco["annotations"]) + 1,
                 "image_id": number,
-                "category_id": KINDS.index(kind),
+                "category_id": CHANNELS.index(kind) + 1,
                 "bbox": box,
                 "area": int(mask.sum()),
                 "segmentation": polygons,

@@ -11,13 +11,13 @@ from models.network import STATISTICS, WeldNet
 from models.ring import RingNet
 from models.ring_pair import pair_rings
 from station.classify.onnx import Classifier, RingNetwork
-from station.classify.thresholds import Thresholds
 from tests.conftest import RING_MODEL
+from tests.parts import thresholds
 
 
 def contract() -> Contract:
     rng = np.random.default_rng(1)
-    return Contract("1.2", "d" * 64, Thresholds(0.3, 0.2), rng.normal(size=STATISTICS), np.eye(STATISTICS) * 0.5, 2.5, (0.5, -1.0, -0.5))
+    return Contract("1.2", "d" * 64, thresholds(0.3, 0.2), rng.normal(size=STATISTICS), np.eye(STATISTICS) * 0.5, 2.5, (0.5, -1.0, -0.5))
 
 
 def trained() -> WeldNet:
@@ -34,13 +34,13 @@ def test_the_file_answers_like_the_network(tmp_path: Path) -> None:
     export(network, tmp_path / "a.onnx", says)
     classifier = Classifier(tmp_path / "a.onnx")
     card = classifier.card
-    assert (card.version, card.hole_threshold, card.missing_threshold, card.novelty_limit) == ("1.2", 0.3, 0.2, 2.5)
+    assert (card.version, card.thresholds, card.novelty_limit) == ("1.2", thresholds(0.3, 0.2), 2.5)
     crops = np.random.default_rng(5).integers(0, 256, (3, 128, 128), dtype=np.uint8)
     with torch.no_grad():
         logits, where, features = network(torch.from_numpy(crops[:, None]))
     judged = classifier(crops)
     wanted = torch.softmax(logits + torch.tensor(says.prior_shift), 1).numpy()
-    assert np.array([(s.ok, s.hole, s.missing_weld) for s in judged.scores]) == pytest.approx(wanted, abs=1e-4)
+    assert np.array([(s.ok, *s.defects.values()) for s in judged.scores]) == pytest.approx(wanted, abs=1e-4)
     assert judged.maps == pytest.approx(torch.sigmoid(where).numpy(), abs=1e-4)
     away = (features.numpy() - says.mean) @ says.whitening
     assert judged.looks == pytest.approx(away, rel=1e-3, abs=1e-3)

@@ -3,13 +3,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.crops import HOLE, MISSING, OK
+from models.crops import OK
 from models.measures import Counts, calibration_error, choose_thresholds, count, refused
 from models.novelty import describe, distances, limit, part_distances
 from station.classify.decision import segment_kind
-from station.classify.thresholds import Thresholds
-from station.domain import SegmentScores
 from station.report.truth import interval
+from tests.models.made import HOLE, MISSING
+from tests.parts import scores_of, thresholds
 
 
 def test_the_papers_equations() -> None:
@@ -31,8 +31,8 @@ SCORE = st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1))
 @given(st.lists(SCORE, min_size=1, max_size=20), st.floats(0.05, 0.9), st.floats(0.05, 0.9))
 def test_the_decision_is_the_stations(raw: list[tuple[float, float, float]], hole: float, gone: float) -> None:
     scores = np.array(raw)
-    limits = Thresholds(hole, gone)
-    wanted = [segment_kind(SegmentScores(*row), limits) is not None for row in scores.tolist()]
+    limits = thresholds(hole, gone)
+    wanted = [segment_kind(scores_of(*row), limits) is not None for row in scores.tolist()]
     assert refused(scores, limits).tolist() == wanted
 
 
@@ -46,8 +46,8 @@ def test_thresholds_part_what_can_be_parted() -> None:
     scores[:, OK] = 1 - scores[:, 1:].sum(axis=1)
     limits = choose_thresholds(scores, labels)
     assert count(refused(scores, limits), labels != OK).f2 == 1.0
-    assert 0.2 < limits.hole <= 0.3
-    assert limits.missing_weld <= 0.3
+    assert 0.2 < limits.kinds[0].threshold <= 0.3
+    assert limits.kinds[1].threshold <= 0.3
 
 
 def test_calibration_error_of_honest_and_of_boastful_scores() -> None:

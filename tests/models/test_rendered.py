@@ -5,10 +5,10 @@ import cv2
 import numpy as np
 import pytest
 
-from models.crops import HOLE, MISSING, OK
+from models.crops import OK
 from models.errors import LearningError
 from models.rendered import read_rendered
-from tests.models.made import dataset
+from tests.models.made import HOLE, MISSING, dataset
 
 
 @pytest.fixture

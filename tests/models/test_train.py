@@ -7,7 +7,6 @@ import pytest
 
 from models.__main__ import main
 from models.card import card_text
-from models.crops import HOLE
 from models.detection import boxes, evaluate_boxes
 from models.errors import LearningError
 from models.fit import Plan, fit
@@ -17,8 +16,9 @@ from models.quantize import quantize
 from models.rendered import read_rendered
 from models.train import train
 from station.classify.onnx import Classifier
+from station.defects import KINDS
 from tests.conftest import MODEL
-from tests.models.made import crops, dataset
+from tests.models.made import HOLE, crops, dataset
 
 SMALL = Plan(steps=160, batch=24, average=0.95, learning_rate=0.004)
 
@@ -54,7 +54,7 @@ def test_the_shipped_card_is_that_of_its_run_and_of_its_file() -> None:
     assert (MODEL.parent / "CARD.md").read_text() == card_text(card)
     says = Classifier(MODEL).card
     assert (says.version, says.data_hash, says.novelty_limit) == (card["version"], card["data_hash"], card["novelty_limit"])
-    assert {"hole": says.hole_threshold, "missing_weld": says.missing_threshold} == card["thresholds"]
+    assert {limit.kind.name: limit.threshold for limit in says.thresholds.kinds} == card["thresholds"]
 
 
 def test_the_map_shows_where_the_defect_is(run: Path) -> None:
@@ -97,7 +97,7 @@ def test_boxes_lie_on_the_defects(run: Path, data: Path) -> None:
 def test_a_box_does_not_close_over_the_borders_of_a_crop() -> None:
     maps = np.zeros((2, 32, 32), np.float32)
     maps[0, 10:14, :4] = maps[0, 10:14, 28:] = 1
-    assert sorted(b.box_px for b in boxes(maps, (0.9, 0.1))) == [(0.0, 40.0, 16.0, 16.0), (112.0, 40.0, 16.0, 16.0)]
+    assert sorted(b.box_px for b in boxes(maps, {KINDS[0]: 0.9, KINDS[1]: 0.1})) == [(0.0, 40.0, 16.0, 16.0), (112.0, 40.0, 16.0, 16.0)]
 
 
 def test_eight_bits_judge_alike_or_are_not_kept(run: Path, data: Path, tmp_path: Path) -> None:

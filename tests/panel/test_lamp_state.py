@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station.domain import Inspection, Origin, Purpose, Reason
+from station.defects import Reason
+from station.domain import Inspection, Origin, Purpose
 from station.events import STATUS_LOST_S, PartEvent, StatusEvent
 from station.panel.live.lamp_state import FRESH_S, GONE_S, WHY_OFFLINE, Tone, lamp
 from station.plc.alarms import Alarm

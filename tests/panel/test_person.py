@@ -15,7 +15,7 @@ from deploy.demo import free_ports, running, shipped_parts, station_toml
 from station import adjustments
 from station.archive.journal import Kind, entries
 from station.archive.review import Opinion, State, reviews
-from station.domain import Reason
+from station.defects import Reason
 from station.imagefile import read_image
 from station.panel.app import open_window
 from station.panel.history.page import HistoryPage
@@ -132,10 +132,10 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     assert reviews(folder)[number].agreed is Opinion.FALSE_CALL
     setup.show_tab(setup.recipe)
     recipe = setup.recipe
-    recipe.fields["hole_min_mm"].edit.setText("99")
-    assert recipe.fields["hole_min_mm"].problem == "allowed: 0 … 5"
+    recipe.fields["limits.hole.min_mm"].edit.setText("99")
+    assert recipe.fields["limits.hole.min_mm"].problem == "allowed: 0 … 5"
     assert not recipe.ask.isEnabled()
-    recipe.fields["hole_min_mm"].edit.setText("1.5")
+    recipe.fields["limits.hole.min_mm"].edit.setText("1.5")
     assert not recipe.save.isEnabled(), "nobody asked what if"
     qtbot.mouseClick(recipe.ask, LEFT)
     qtbot.waitUntil(lambda: bool(recipe.said.text()), timeout=10_000)
@@ -149,9 +149,9 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     qtbot.mouseClick(recipe.save, LEFT)
     qtbot.waitUntil(lambda: session.status is not None and session.status.config_crc != crc, timeout=20_000)
     qtbot.waitUntil(lambda: recipe.said.text() == "saved and in use", timeout=5000)
-    assert adjustments.read(path) == {"recipes": {"1": {"model": {"hole_min_mm": 1.5}}}}
+    assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"min_mm": 1.5}}}}}}
     (change,) = entries(folder, (Kind.SETTING,))
-    assert (change.who, change.subject, change.after) == ("Quentin", "recipes.1.model.hole_min_mm", "1.5")
+    assert (change.who, change.subject, change.after) == ("Quentin", "recipes.1.model.limits.hole.min_mm", "1.5")
     assert change.reason == "trial of the least length"
     again = line.passes(qtbot, 4)
     assert sum(a.verdict is VerdictCode.OK for a in again) == len(ok) + len(released), "as what if had said"

@@ -112,7 +112,7 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(window: Wi
     page = recipe_page(window)
 
     def asked() -> None:
-        page.fields["hole_threshold"].edit.setText("0.9")
+        page.fields["limits.hole.threshold"].edit.setText("0.9")
         page.reason.setText(REASON)
         page.ask.click()
         qtbot.waitUntil(page.save.isEnabled, timeout=10_000)
@@ -120,12 +120,12 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(window: Wi
     asked()
     assert page.said.text().startswith("1 parts")
     page.recipe.setCurrentIndex(1)
-    page.fields["hole_threshold"].edit.setText("0.9")
+    page.fields["limits.hole.threshold"].edit.setText("0.9")
     assert not page.save.isEnabled(), "nobody asked what if of recipe 2"
     assert page.said.text() == ""
     page.recipe.setCurrentIndex(0)
     asked()
-    page.fields["hole_threshold"].edit.setText("0.8")
+    page.fields["limits.hole.threshold"].edit.setText("0.8")
     assert not page.save.isEnabled()
     asked()
     session.log_in(replace(QUENTIN, name="Quirin"))
@@ -145,7 +145,7 @@ def test_a_change_is_asked_for_until_the_station_has_taken_it(window: Window, pa
     session.change_refused.connect(lambda: heard.append("refused"))
     session._on_status(status())
     session.log_in(QUENTIN)
-    place = ("recipes", "1", "model", "hole_threshold")
+    place = ("recipes", "1", "model", "limits", "hole", "threshold")
     change(session, Level.QUALITY, {place: (0.46, 0.9)}, REASON)
     session._on_status(status(reloaded_s=time.time() - 60))
     assert heard == [], "the station has not yet read them"
@@ -159,7 +159,7 @@ def test_a_change_is_asked_for_until_the_station_has_taken_it(window: Window, pa
     assert heard == ["used"], "an alarm of a change before says nothing of this one"
     session._on_status(status(alarms=alarm, reloaded_s=time.time() + 1))
     assert heard == ["used", "refused"]
-    assert adjustments.read(path) == {"recipes": {"1": {"model": {"hole_threshold": 0.9}}}}
+    assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"threshold": 0.9}}}}}}
 
 
 def test_two_windows_do_not_wipe_each_other_out(window: Window, path: Path) -> None:
@@ -171,9 +171,9 @@ def test_two_windows_do_not_wipe_each_other_out(window: Window, path: Path) -> N
     first = session.change
     assert first is not None
     assert first.undo is not None
-    change(session, Level.QUALITY, {("recipes", "1", "model", "hole_threshold"): (0.46, 0.5)}, REASON)
+    change(session, Level.QUALITY, {("recipes", "1", "model", "limits", "hole", "threshold"): (0.46, 0.5)}, REASON)
     first.undo()
-    assert adjustments.read(path) == {"recipes": {"1": {"model": {"hole_threshold": 0.5}}}}
+    assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"threshold": 0.5}}}}}}
 
 
 def test_the_chosen_alarm_stays_chosen_when_another_comes(window: Window) -> None:
@@ -209,7 +209,7 @@ def test_what_cannot_be_taken_back_just_now_is_taken_back_later(window: Window, 
     session = window.session
     session._on_status(status())
     session.log_in(QUENTIN)
-    change(session, Level.QUALITY, {("recipes", "1", "model", "hole_threshold"): (0.46, 0.9)}, REASON)
+    change(session, Level.QUALITY, {("recipes", "1", "model", "limits", "hole", "threshold"): (0.46, 0.9)}, REASON)
     refused = status(alarms=(int(Alarm.SETTINGS_REFUSED),), reloaded_s=time.time() + 1)
     with adjustments.editing(path):
         session._on_status(refused)
@@ -222,8 +222,8 @@ def test_two_changes_that_wait_together_are_taken_back_together(window: Window, 
     session = window.session
     session._on_status(status())
     session.log_in(QUENTIN)
-    for key, before, after in (("hole_threshold", 0.46, 0.9), ("missing_threshold", 0.34, 0.9)):
-        change(session, Level.QUALITY, {("recipes", "1", "model", key): (before, after)}, REASON)
+    for key, before, after in (("hole", 0.46, 0.9), ("missing_weld", 0.34, 0.9)):
+        change(session, Level.QUALITY, {("recipes", "1", "model", "limits", key, "threshold"): (before, after)}, REASON)
     session._on_status(status(alarms=(int(Alarm.SETTINGS_REFUSED),), reloaded_s=time.time() + 1))
     assert adjustments.read(path) == {}
 

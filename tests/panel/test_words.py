@@ -12,7 +12,8 @@ from pytestqt.qtbot import QtBot
 from deploy.translations import TS, release, untranslated, update
 from station.archive.journal import Kind
 from station.archive.review import Opinion, State
-from station.domain import Origin, Purpose, Reason
+from station.defects import Reason
+from station.domain import Origin, Purpose
 from station.panel import words
 from station.panel.live.lamp_state import WHY_OFFLINE
 from station.panel.theme import THEMES, Colors

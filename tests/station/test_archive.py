@@ -8,7 +8,8 @@ import pytest
 
 from station.archive.reader import read_records
 from station.archive.writer import Archive
-from station.domain import Frame, Image, Inspection, Origin, Reason
+from station.defects import Reason
+from station.domain import Frame, Image, Inspection, Origin
 from station.errors import RecordError
 from station.imagefile import read_image
 from station.records import Part, Record

@@ -5,13 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from station.classify.decision import findings, mean_of, near_threshold, refused_kinds, segment_kind
+from station.classify.decision import findings, mean_of, near_threshold, rejected_kinds, segment_kind
 from station.classify.extent import CELL_PX, CELLS, Map
-from station.classify.thresholds import Thresholds
-from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, Ring, SegmentScores
+from station.defects import KINDS, Reason
+from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Ring, SegmentScores
+from tests.parts import scores_of, thresholds
 
-OK, HOLE, GONE = SegmentScores(0.98, 0.01, 0.01), SegmentScores(0.1, 0.8, 0.1), SegmentScores(0.1, 0.1, 0.8)
-LIMITS = Thresholds(0.5, 0.5)
+OK, HOLE, GONE = scores_of(0.98, 0.01, 0.01), scores_of(0.1, 0.8, 0.1), scores_of(0.1, 0.1, 0.8)
+LIMITS = thresholds(0.5, 0.5)
 RING = Ring(600.0, 600.0, 428.0, 1.0)
 UM = 13.0
 BLIND = np.zeros((SEGMENTS, 2, CELLS, CELLS), np.float32)
@@ -22,7 +23,7 @@ def row(**bad: SegmentScores) -> tuple[SegmentScores, ...]:
 
 
 def judged(scores: tuple[SegmentScores, ...], maps: Map = BLIND) -> tuple[Finding, ...]:
-    return findings(scores, maps, LIMITS, RING, UM)
+    return findings(scores, maps, KINDS, LIMITS, RING, UM)
 
 
 def test_neighbours_the_map_is_blind_to_merge_over_the_seam() -> None:
@@ -69,7 +70,7 @@ def test_a_map_in_a_segment_that_passed_is_no_finding() -> None:
 
 
 def test_a_segment_not_likelier_ok_than_not_is_nok_whatever_the_thresholds() -> None:
-    assert segment_kind(SegmentScores(0.3, 0.4, 0.3), Thresholds(0.9, 0.9)) is Reason.HOLE
+    assert segment_kind(scores_of(0.3, 0.4, 0.3), thresholds(0.9, 0.9)) == KINDS[0]
 
 
 SCORES = st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1)), min_size=SEGMENTS, max_size=SEGMENTS)
@@ -80,11 +81,11 @@ SCORES = st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1)), 
 def test_every_refused_segment_lies_in_a_finding_and_without_one_none_is_refused(
     raw: list[tuple[float, float, float]], limit: float, seed: int
 ) -> None:
-    scores = tuple(SegmentScores(a / (a + b + c + 1e-9), b / (a + b + c + 1e-9), c / (a + b + c + 1e-9)) for a, b, c in raw)
+    scores = tuple(scores_of(a / (a + b + c + 1e-9), b / (a + b + c + 1e-9), c / (a + b + c + 1e-9)) for a, b, c in raw)
     rng = np.random.default_rng(seed)
     maps = np.asarray((rng.random(BLIND.shape) > 0.97) * rng.random(BLIND.shape), np.float32)
-    limits = Thresholds(limit, limit)
-    found = findings(scores, maps, limits, RING, UM)
+    limits = thresholds(limit, limit)
+    found = findings(scores, maps, KINDS, limits, RING, UM)
     for index, s in enumerate(scores):
         if segment_kind(s, limits) is not None:
             start, end = index * SEGMENT_DEG, (index + 1) * SEGMENT_DEG
@@ -94,15 +95,15 @@ def test_every_refused_segment_lies_in_a_finding_and_without_one_none_is_refused
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=4))
 def test_several_looks_lie_between_the_best_and_the_worst(nok: list[float]) -> None:
-    again = mean_of([SegmentScores(1 - p, p, 0.0) for p in nok])
-    assert again.ok + again.hole + again.missing_weld == pytest.approx(1)
+    again = mean_of([scores_of(1 - p, p, 0.0) for p in nok])
+    assert again.ok + sum(again.defects.values()) == pytest.approx(1)
     assert min(nok) - 1e-6 <= again.nok <= max(nok) + 1e-6
 
 
 def test_clear_segments_get_no_second_look() -> None:
-    assert not near_threshold(SegmentScores(0.98, 0.01, 0.01), LIMITS)
-    assert not near_threshold(SegmentScores(0.01, 0.98, 0.01), LIMITS)
-    assert near_threshold(SegmentScores(0.6, 0.39, 0.01), LIMITS)
+    assert not near_threshold(scores_of(0.98, 0.01, 0.01), LIMITS)
+    assert not near_threshold(scores_of(0.01, 0.98, 0.01), LIMITS)
+    assert near_threshold(scores_of(0.6, 0.39, 0.01), LIMITS)
 
 
 def one_hole(columns: int) -> Map:
@@ -114,30 +115,30 @@ def one_hole(columns: int) -> Map:
 
 @pytest.mark.parametrize(("columns", "least_mm", "refused"), [(2, 0.0, True), (2, 0.3, False), (8, 0.3, True)])
 def test_a_finding_shorter_than_the_least_length_is_told_and_tolerated(columns: int, least_mm: float, refused: bool) -> None:
-    limits = Thresholds(0.5, 0.5, hole_min_mm=least_mm)
-    found = findings(row(s4=HOLE), one_hole(columns), limits, RING, UM)
+    limits = thresholds(0.5, 0.5, hole_mm=least_mm)
+    found = findings(row(s4=HOLE), one_hole(columns), KINDS, limits, RING, UM)
     assert len(found) == 1
-    kinds = refused_kinds(row(s4=HOLE), found, limits)
+    kinds = rejected_kinds(row(s4=HOLE), found, limits)
     assert [i for i, kind in enumerate(kinds) if kind] == ([4] if refused else [])
 
 
 def test_what_could_not_be_measured_or_stands_beside_something_greater_is_never_tolerated() -> None:
-    limits = Thresholds(0.5, 0.5, hole_min_mm=5.0, missing_min_mm=5.0)
-    blind = findings(row(s4=HOLE, s9=GONE), BLIND, limits, RING, UM)
-    assert [i for i, kind in enumerate(refused_kinds(row(s4=HOLE, s9=GONE), blind, limits)) if kind] == [4, 9]
+    limits = thresholds(0.5, 0.5, hole_mm=5.0, missing_mm=5.0)
+    blind = findings(row(s4=HOLE, s9=GONE), BLIND, KINDS, limits, RING, UM)
+    assert [i for i, kind in enumerate(rejected_kinds(row(s4=HOLE, s9=GONE), blind, limits)) if kind] == [4, 9]
     maps = one_hole(2)
     maps[4, 0, 2:6, 20:30] = 1
-    some = Thresholds(0.5, 0.5, hole_min_mm=0.3)
-    found = findings(row(s4=HOLE), maps, some, RING, UM)
+    some = thresholds(0.5, 0.5, hole_mm=0.3)
+    found = findings(row(s4=HOLE), maps, KINDS, some, RING, UM)
     assert len(found) == 2
-    assert refused_kinds(row(s4=HOLE), found, some)[4] is Reason.HOLE
+    assert rejected_kinds(row(s4=HOLE), found, some)[4] is Reason.HOLE
 
 
 def test_a_segment_may_have_a_limit_of_its_own() -> None:
-    scores = row(s4=SegmentScores(0.7, 0.2, 0.1), s5=SegmentScores(0.7, 0.2, 0.1))
-    limits = Thresholds(0.5, 0.5, segments=((5, 0.15),))
-    found = findings(scores, BLIND, limits, RING, UM)
-    assert [i for i, kind in enumerate(refused_kinds(scores, found, limits)) if kind] == [4]
+    scores = row(s4=scores_of(0.7, 0.2, 0.1), s5=scores_of(0.7, 0.2, 0.1))
+    limits = thresholds(0.5, 0.5, segments=((5, 0.15),))
+    found = findings(scores, BLIND, KINDS, limits, RING, UM)
+    assert [i for i, kind in enumerate(rejected_kinds(scores, found, limits)) if kind] == [4]
 
 
 @settings(deadline=None)
@@ -145,37 +146,37 @@ def test_a_segment_may_have_a_limit_of_its_own() -> None:
 def test_least_lengths_only_tolerate_and_without_them_every_segment_over_its_limit_is_refused(
     raw: list[tuple[float, float, float]], limit: float, hole_mm: float, missing_mm: float, seed: int
 ) -> None:
-    scores = tuple(SegmentScores(a / s, b / s, c / s) for a, b, c in raw if (s := a + b + c) > 0.01)
+    scores = tuple(scores_of(a / s, b / s, c / s) for a, b, c in raw if (s := a + b + c) > 0.01)
     if len(scores) < SEGMENTS:
         return
     maps = np.random.default_rng(seed).beta(0.2, 1.0, BLIND.shape).astype(np.float32)
-    strict, mild = Thresholds(limit, limit), Thresholds(limit, limit, (), hole_mm, missing_mm)
-    over = [segment_kind(s, strict) for s in scores]
-    assert refused_kinds(scores, findings(scores, maps, strict, RING, UM), strict) == over
-    kinds = refused_kinds(scores, findings(scores, maps, mild, RING, UM), mild)
+    strict, mild = thresholds(limit, limit), thresholds(limit, limit, (), hole_mm, missing_mm)
+    over = tuple(None if (kind := segment_kind(s, strict)) is None else kind.reason for s in scores)
+    assert rejected_kinds(scores, findings(scores, maps, KINDS, strict, RING, UM), strict) == over
+    kinds = rejected_kinds(scores, findings(scores, maps, KINDS, mild, RING, UM), mild)
     assert all(kind in (None, before) for kind, before in zip(kinds, over, strict=True))
     tolerated = [i for i, (kind, before) in enumerate(zip(kinds, over, strict=True)) if before and not kind]
     for i in tolerated:
-        assert any(f.kind is over[i] and f.area_mm2 is not None for f in findings(scores, maps, mild, RING, UM))
+        assert any(f.kind is over[i] and f.area_mm2 is not None for f in findings(scores, maps, KINDS, mild, RING, UM))
 
 
 def test_small_defects_side_by_side_and_long_ones_across_the_seam_are_not_small() -> None:
-    limits = Thresholds(0.5, 0.5, hole_min_mm=0.5)
+    limits = thresholds(0.5, 0.5, hole_mm=0.5)
     row_of_pores = BLIND.copy()
     for column in (2, 10, 18, 26):
         row_of_pores[4, 0, 14:18, column : column + 2] = 1  # each 0.1 mm long, 0.21 mm wide
     across = BLIND.copy()
     across[4, 0, 4:28, 14:16] = 1  # 0.1 mm along the weld, 1.2 mm across
     for maps in (row_of_pores, across):
-        found = findings(row(s4=HOLE), maps, limits, RING, UM)
+        found = findings(row(s4=HOLE), maps, KINDS, limits, RING, UM)
         assert all(f.length_mm < 0.5 for f in found)
-        assert refused_kinds(row(s4=HOLE), found, limits)[4] is Reason.HOLE
+        assert rejected_kinds(row(s4=HOLE), found, limits)[4] is Reason.HOLE
 
 
 def test_a_segment_over_both_limits_is_never_tolerated() -> None:
     """Its map is read for the likelier kind alone: a small hole must not hide a bare joint."""
-    limits = Thresholds(0.3, 0.3, hole_min_mm=0.5)
-    both = row(s4=SegmentScores(0.02, 0.50, 0.48))
+    limits = thresholds(0.3, 0.3, hole_mm=0.5)
+    both = row(s4=scores_of(0.02, 0.50, 0.48))
     maps = one_hole(2)
     maps[4, 1] = 1
-    assert refused_kinds(both, findings(both, maps, limits, RING, UM), limits)[4] is Reason.HOLE
+    assert rejected_kinds(both, findings(both, maps, KINDS, limits, RING, UM), limits)[4] is Reason.HOLE

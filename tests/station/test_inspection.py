@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from station.classify.onnx import Classifier, Judged, RingNetwork
-from station.domain import SEGMENTS, Image, Inspection, Reason, Verdict
+from station.defects import Reason
+from station.domain import SEGMENTS, Image, Inspection, Verdict
 from station.errors import ModelError
 from station.inspection import Inspector
 from station.settings import ModelSettings, QualitySettings, WeldSettings
@@ -75,7 +76,10 @@ def test_a_failing_model_is_never_ok(
     assert (judged.verdict, judged.reason) == (Verdict.ERROR, Reason.MODEL_FAILED)
 
 
-@pytest.mark.parametrize("change", [{"scores": ()}, {"scores": ok_inspection().scores[:20]}, {"ring": None}, {"reason": Reason.HOLE}])
+@pytest.mark.parametrize(
+    "change",
+    [{"scores": ()}, {"scores": ok_inspection().scores[:20]}, {"ring": None}, {"reason": Reason.HOLE}, {"rejected": (Reason.HOLE,) * 21}],
+)
 def test_ok_cannot_be_made_from_less_than_21_segments(change: dict[str, object]) -> None:
     with pytest.raises(ValueError, match="21 judged segments"):
         replace(ok_inspection(), **change)  # type: ignore[arg-type]

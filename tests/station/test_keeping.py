@@ -19,7 +19,8 @@ from station.archive.reader import find, read_records, verify
 from station.archive.room import Room
 from station.archive.schema import VERSION
 from station.archive.writer import Archive
-from station.domain import Frame, Image, Inspection, Origin, Reason
+from station.defects import Reason
+from station.domain import Frame, Image, Inspection, Origin
 from station.errors import RecordError
 from station.imagefile import read_image
 from station.records import Part

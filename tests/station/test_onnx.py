@@ -12,7 +12,7 @@ from tests.conftest import MODEL
 def test_the_shipped_model_says_what_it_is(classifier: Classifier) -> None:
     assert classifier.card.version
     assert len(classifier.card.data_hash) == 64
-    assert 0 < classifier.card.hole_threshold < 1
+    assert [limit.kind.name for limit in classifier.card.thresholds.kinds] == ["hole", "missing_weld"]
 
 
 def test_one_crop_and_many_give_the_same(classifier: Classifier, rng: np.random.Generator) -> None:
@@ -51,7 +51,9 @@ def test_a_model_without_its_metadata_is_refused(key: str, tmp_path: Path) -> No
     ("key", "value", "said"),
     [
         ("weldgate.classes", '["a", "b"]', "classes"),
-        ("weldgate.thresholds", "{}", "cannot be read"),
+        ("weldgate.thresholds", "[]", "cannot be read"),
+        ("weldgate.thresholds", "{}", "between 0 and 1, one for each"),
+        ("weldgate.classes", '["ok", "hole", "dent"]', "unknown kind of defect 'dent'"),
         ("weldgate.thresholds", '{"hole": 2, "missing_weld": 0.5}', "between 0 and 1"),
         ("weldgate.novelty_limit", "-1", "above 0"),
     ],

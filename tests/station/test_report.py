@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from station.__main__ import main
 from station.archive.writer import Archive
-from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Reason
+from station.defects import Reason
+from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose
 from station.records import Part
 from station.report.figures import angle_counts, bars, clock_face, trend
 from station.settings import ArchiveSettings

@@ -15,15 +15,15 @@ from station.archive.room import Room
 from station.archive.statistics import shift_of, summarise
 from station.archive.whatif import what_if
 from station.archive.writer import Archive
-from station.classify.thresholds import Thresholds
 from station.condition import Seen, alarms, health
-from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Reason, Verdict
+from station.defects import Reason
+from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Verdict
 from station.errors import LoginError
 from station.plc.alarms import Alarm
 from station.plc.registers import Offline
 from station.records import Part, Record
 from station.settings import ArchiveSettings, QualitySettings
-from tests.parts import label_with, nok_inspection, ok_inspection, provenance, record
+from tests.parts import label_with, nok_inspection, ok_inspection, provenance, record, scores_of, thresholds
 
 OPINIONS = st.dictionaries(st.sampled_from(["Ada", "Bob", "Cy"]), st.sampled_from(list(Opinion)))
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
@@ -76,13 +76,12 @@ SCORES = st.floats(0, 1).flatmap(lambda a: st.floats(0, 1 - a).map(lambda b: (1 
 
 def judged(scores: list[tuple[float, float, float]], number: int = 1) -> Record:
     """A record that was decided by its own limits, 0.5 and 0.5."""
-    from station.classify.decision import segment_kind
-    from station.domain import SegmentScores
+    from station.classify.decision import rejected_kinds
 
-    made = tuple(SegmentScores(*s) for s in scores)
-    bad = any(segment_kind(s, Thresholds(0.5, 0.5)) for s in made)
-    verdict, reason = (Verdict.NOK, Reason.HOLE) if bad else (Verdict.OK, None)
-    return record(replace(ok_inspection(), verdict=verdict, reason=reason, scores=made), number)
+    made = tuple(scores_of(*s) for s in scores)
+    rejected = rejected_kinds(made, (), thresholds(0.5, 0.5))
+    verdict, reason = (Verdict.NOK, Reason.HOLE) if any(rejected) else (Verdict.OK, None)
+    return record(replace(ok_inspection(), verdict=verdict, reason=reason, scores=made, rejected=rejected), number)
 
 
 @given(st.lists(SCORES, min_size=SEGMENTS, max_size=SEGMENTS), st.floats(0.01, 0.99), st.floats(0.01, 0.99))
@@ -90,9 +89,9 @@ def test_what_if_with_the_same_limits_changes_nothing_and_stricter_ones_release_
     scores: list[tuple[float, float, float]], hole: float, missing: float
 ) -> None:
     part = judged(scores)
-    same = what_if([part], Thresholds(0.5, 0.5), QualitySettings())
+    same = what_if([part], thresholds(0.5, 0.5), QualitySettings())
     assert (same.released, same.refused) == ((), ())
-    asked = what_if([part], Thresholds(hole, missing), QualitySettings())
+    asked = what_if([part], thresholds(hole, missing), QualitySettings())
     if hole <= 0.5 and missing <= 0.5:
         assert asked.released == ()
     if hole >= 0.5 and missing >= 0.5:
@@ -101,17 +100,17 @@ def test_what_if_with_the_same_limits_changes_nothing_and_stricter_ones_release_
 
 
 def test_what_if_counts_parts_alone_and_says_what_nobody_knows() -> None:
-    dark = replace(ok_inspection(), verdict=Verdict.ERROR, reason=Reason.TOO_DARK, scores=())
+    dark = replace(ok_inspection(), verdict=Verdict.ERROR, reason=Reason.TOO_DARK, scores=(), rejected=())
     parts = [
         record(ok_inspection(), 1),
         record(nok_inspection(), 2),
         replace(record(nok_inspection(), 3), purpose=Purpose.TEST),
         record(dark, 4),
     ]
-    found = what_if(parts, Thresholds(0.95, 0.95), QualitySettings(min_sharpness=0.0))
+    found = what_if(parts, thresholds(0.95, 0.95), QualitySettings(min_sharpness=0.0))
     assert (found.looked_at, found.unknown) == (2, 1)
     assert [(f.inspection_id, f.before, f.after, f.segment) for f in found.released] == []
-    sharper = what_if(parts, Thresholds(0.5, 0.5), QualitySettings(min_sharpness=9.0))
+    sharper = what_if(parts, thresholds(0.5, 0.5), QualitySettings(min_sharpness=9.0))
     assert [(f.inspection_id, f.after) for f in sharper.refused] == [(1, Verdict.ERROR)]
 
 

@@ -11,7 +11,8 @@ import pytest
 from station.__main__ import main
 from station.archive.reader import Wanted, find
 from station.archive.writer import Archive
-from station.domain import Inspection, Origin, Reason
+from station.defects import Reason
+from station.domain import Inspection, Origin
 from station.records import Part
 from station.settings import ArchiveSettings
 from tests.parts import nok_inspection, ok_inspection, provenance

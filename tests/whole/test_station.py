@@ -20,7 +20,8 @@ from station.archive.writer import Archive
 from station.camera.pylon import PylonCamera
 from station.classify.drift import Reference, write_reference
 from station.classify.onnx import LOOK
-from station.domain import Frame, Image, Purpose, Reason, Verdict
+from station.defects import Reason
+from station.domain import Frame, Image, Purpose, Verdict
 from station.errors import ModelError, RecordError
 from station.events import Event, PartEvent
 from station.listener import Listener
@@ -85,7 +86,7 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
             "archive": {"folder": tmp_path / "records", "min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1},
             "plc": {"port": free_ports(1)[0], "deadline_ms": 5000},
             "golden": {"masters": {"MASTER-OK": "OK", "MASTER-NOK": "NOK"}},
-            "recipes": {2: {"model": {"hole_threshold": 0.0001}}, 3: {"model": {"path": tmp_path / "absent.onnx"}}},
+            "recipes": {2: {"model": {"limits": {"hole": {"threshold": 0.0001}}}}, 3: {"model": {"path": tmp_path / "absent.onnx"}}},
         }
     )
 

@@ -8,7 +8,8 @@ from PySide6.QtWidgets import QComboBox, QDateTimeEdit, QHBoxLayout, QLineEdit, 
 
 from station.archive.reader import Row, Wanted, find
 from station.archive.review import Review, State, reviews
-from station.domain import SEGMENTS, Purpose, Reason, Verdict
+from station.defects import Reason
+from station.domain import SEGMENTS, Purpose, Verdict
 from station.panel.card import Choice, label
 from station.panel.session import FILM
 from station.panel.words import data, translate

@@ -6,11 +6,11 @@ from pathlib import Path
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
-from station.archive.decided import segment_kinds
 from station.archive.reader import Row, read_record
 from station.archive.review import Marks
 from station.classify.thresholds import Thresholds
-from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Reason, Ring, Verdict
+from station.defects import KINDS
+from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Ring, Verdict
 from station.errors import ImageError, LocateError
 from station.panel.card import Facts, Table, label, titled
 from station.panel.weld.kept import of_record
@@ -97,12 +97,14 @@ class RecordView(QWidget):
         self.strip.show_marks({})
 
     def mark(self, index: int) -> None:
-        """A cell of an OK part was touched: hole, missing weld, nothing, in turns."""
+        """Mark a touched cell of an OK part: each kind of defect in turn, then none."""
         if self.record is None or self.record.verdict is not Verdict.OK:
             return
         now = self.marks.pop(index + 1, None)
-        if now is not Reason.MISSING_WELD:
-            self.marks[index + 1] = Reason.HOLE if now is None else Reason.MISSING_WELD
+        turns = [None, *(kind.reason for kind in KINDS), None]
+        following = turns[turns.index(now) + 1]
+        if following is not None:
+            self.marks[index + 1] = following
         self.strip.show_marks({number: data(kind) for number, kind in self.marks.items()})
         self.marked.emit()
 
@@ -115,7 +117,7 @@ class RecordView(QWidget):
             return
         self.problem.setText(said)
         record, inspection = self.record, self.record.inspection
-        nok = tuple(kind is not None for kind in segment_kinds(record))
+        nok = inspection.nok
         self.marks = {}
         try:
             drawn, strip = of_record(folder, record)
@@ -172,10 +174,10 @@ def _ring(ring: Ring) -> str:
     return f"{ring.center_x_px:.1f} · {ring.center_y_px:.1f} · {ring.radius_px:.1f} · {ring.residual_px:.2f}"
 
 
-def _limits(t: Thresholds) -> list[str]:
-    lines = [f"{data(Reason.HOLE)} {t.hole:.2f}", f"{data(Reason.MISSING_WELD)} {t.missing_weld:.2f}"]
-    if t.segments:
-        lines.append(", ".join(f"{number}: {limit:g}" for number, limit in t.segments))
-    if t.hole_min_mm or t.missing_min_mm:
-        lines.append(f"≥ {t.hole_min_mm:g} mm · ≥ {t.missing_min_mm:g} mm")
+def _limits(thresholds: Thresholds) -> list[str]:
+    lines = [f"{data(limit.kind.reason)} {limit.threshold:.2f}" for limit in thresholds.kinds]
+    if thresholds.segments:
+        lines.append(", ".join(f"{number}: {limit:g}" for number, limit in thresholds.segments))
+    if any(limit.min_mm for limit in thresholds.kinds):
+        lines.append(" · ".join(f"≥ {limit.min_mm:g} mm" for limit in thresholds.kinds))
     return lines

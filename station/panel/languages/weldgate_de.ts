@@ -1319,20 +1319,12 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Rezept</translation>
     </message>
     <message>
-        <source>threshold of holes</source>
-        <translation>Schwelle für Löcher</translation>
+        <source>{kind}: threshold</source>
+        <translation>{kind}: Schwelle</translation>
     </message>
     <message>
-        <source>threshold of missing weld</source>
-        <translation>Schwelle für fehlende Naht</translation>
-    </message>
-    <message>
-        <source>least length of holes, mm</source>
-        <translation>kleinste Länge von Löchern, mm</translation>
-    </message>
-    <message>
-        <source>least length of missing weld, mm</source>
-        <translation>kleinste Länge fehlender Naht, mm</translation>
+        <source>{kind}: minimum length (mm)</source>
+        <translation>{kind}: Mindestlänge (mm)</translation>
     </message>
     <message>
         <source>least brightness</source>

@@ -216,7 +216,7 @@ class ReplayPage(Page):
         def work(_told: Told) -> tuple[str, Drawn]:
             image, inspector = at_scale(read_image(path), found.factor), found.judge[0]
             inspection = inspector.inspect(image)
-            return str(name), judged(image, inspection, inspector.refused(inspection))[0]
+            return str(name), judged(image, inspection)[0]
 
         self._looking.start("", work)
 

@@ -8,8 +8,9 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QPushButton, 
 from station.archive.reader import Wanted, find, read_words
 from station.archive.whatif import WhatIf, what_if
 from station.classify.onnx import Classifier
-from station.classify.thresholds import Thresholds
-from station.errors import ModelError, WeldgateError
+from station.classify.thresholds import Limit, Thresholds, in_use
+from station.defects import KINDS
+from station.errors import ModelError, SettingsError, WeldgateError
 from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
@@ -24,10 +25,8 @@ from station.users import Level
 PARTS = 5000
 """The newest parts that are scored again."""
 FIELDS = {
-    "hole_threshold": ("model", 0.01, 0.99),
-    "missing_threshold": ("model", 0.01, 0.99),
-    "hole_min_mm": ("model", 0.0, 5.0),
-    "missing_min_mm": ("model", 0.0, 5.0),
+    **{f"limits.{kind.name}.threshold": ("model", 0.01, 0.99) for kind in KINDS},
+    **{f"limits.{kind.name}.min_mm": ("model", 0.0, 5.0) for kind in KINDS},
     "min_mean_dn": ("quality", 0.0, 255.0),
     "max_dark_share": ("quality", 0.0, 1.0),
     "max_saturated_share": ("quality", 0.0, 1.0),
@@ -59,11 +58,10 @@ class RecipePage(Page):
         word = translate("recipe", "recipe")
         for number in sorted({1, *session.settings.recipes}):
             self.recipe.addItem(f"{word} {number}", number)
+        threshold, length = translate("recipe", "{kind}: threshold"), translate("recipe", "{kind}: minimum length (mm)")
         names = {
-            "hole_threshold": translate("recipe", "threshold of holes"),
-            "missing_threshold": translate("recipe", "threshold of missing weld"),
-            "hole_min_mm": translate("recipe", "least length of holes, mm"),
-            "missing_min_mm": translate("recipe", "least length of missing weld, mm"),
+            **{f"limits.{kind.name}.threshold": threshold.format(kind=data(kind.reason)) for kind in KINDS},
+            **{f"limits.{kind.name}.min_mm": length.format(kind=data(kind.reason)) for kind in KINDS},
             "min_mean_dn": translate("recipe", "least brightness"),
             "max_dark_share": translate("recipe", "greatest dark share"),
             "max_saturated_share": translate("recipe", "greatest saturated share"),
@@ -138,7 +136,7 @@ class RecipePage(Page):
         settings = for_recipe(self._session.settings, number)
         try:
             self._in_use = Values(number, _limits(settings), dict(settings.model.segment_thresholds))
-        except ModelError as error:
+        except (ModelError, SettingsError) as error:
             self.problem.setText(str(error))
             return
         self.segments.set(self._in_use.segments)
@@ -188,8 +186,12 @@ class RecipePage(Page):
             return
         new, settings = values.limits, for_recipe(self._session.settings, values.recipe)
         quality = settings.quality.model_copy(update={k: v for k, v in new.items() if FIELDS[k][0] == "quality"})
-        sizes = (new["hole_min_mm"], new["missing_min_mm"])
-        thresholds = Thresholds(new["hole_threshold"], new["missing_threshold"], tuple(sorted(values.segments.items())), *sizes)
+        limits = tuple(
+            Limit(kind, new[f"limits.{kind.name}.threshold"], new[f"limits.{kind.name}.min_mm"])
+            for kind in KINDS
+            if f"limits.{kind.name}.threshold" in new
+        )
+        thresholds = Thresholds(limits, tuple(sorted(values.segments.items())))
 
         def work(told: Told) -> tuple[Values, WhatIf, int] | None:
             judge = Classifier(settings.model.path, 1).card.file_hash
@@ -234,7 +236,7 @@ class RecipePage(Page):
         new: dict[tuple[str, ...], tuple[object, object]] = {}
         for key, value in values.limits.items():
             if value != before[key]:
-                new["recipes", recipe, FIELDS[key][0], key] = (used.limits[key], value)
+                new["recipes", recipe, FIELDS[key][0], *key.split(".")] = (used.limits[key], value)
         if values.segments != used.segments:
             new["recipes", recipe, "model", "segment_thresholds"] = (used.segments, values.segments)
         try:
@@ -268,12 +270,9 @@ def _rounded(limits: dict[str, float]) -> dict[str, float]:
 
 
 def _limits(settings: Settings) -> dict[str, float]:
-    """In use: of the settings, else of the model. Raises ModelError."""
-    hole, missing, q = settings.model.hole_threshold, settings.model.missing_threshold, settings.quality
-    if hole is None or missing is None:
-        card = Classifier(settings.model.path, 1).card
-        hole = card.hole_threshold if hole is None else hole
-        missing = card.missing_threshold if missing is None else missing
-    thresholds = {"hole_threshold": hole, "missing_threshold": missing}
-    thresholds |= {"hole_min_mm": settings.model.hole_min_mm, "missing_min_mm": settings.model.missing_min_mm}
-    return thresholds | {key: float(getattr(q, key)) for key, (section, _, _) in FIELDS.items() if section == "quality"}
+    """Return the limits in use: of the settings, else of the model. Raises ModelError, SettingsError."""
+    model, quality = settings.model, settings.quality
+    used = in_use(Classifier(model.path, 1).card.thresholds, model.limits, model.segment_thresholds)
+    values = {f"limits.{limit.kind.name}.threshold": limit.threshold for limit in used.kinds}
+    values |= {f"limits.{limit.kind.name}.min_mm": limit.min_mm for limit in used.kinds}
+    return values | {key: float(getattr(quality, key)) for key, (section, _, _) in FIELDS.items() if section == "quality"}

@@ -7,8 +7,8 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 
-from station.archive.decided import segment_kinds
 from station.archive.reader import Row, read_record
+from station.classify.extent import whole_map
 from station.classify.onnx import Classifier
 from station.domain import STRIP_COLUMNS, Image, Inspection
 from station.errors import ImageError, LocateError
@@ -20,8 +20,6 @@ from station.preview import make_preview
 from station.records import Record
 from station.settings import Settings, for_recipe
 from station.vision.unwrap import segments, unwrap
-
-HOLE_RGB, MISSING_RGB = (255, 60, 50), (255, 190, 40)
 
 
 def kept_frame(folder: Path, record: Record) -> Image:
@@ -35,19 +33,18 @@ def kept_frame(folder: Path, record: Record) -> Image:
 
 def of_record(folder: Path, record: Record) -> tuple[Drawn, QImage | None]:
     """Picture and strip of a record, as it was judged. Raises ImageError."""
-    nok = tuple(kind is not None for kind in segment_kinds(record))
-    return judged(kept_frame(folder, record), record.inspection, nok)
+    return judged(kept_frame(folder, record), record.inspection)
 
 
-def judged(image: Image, inspection: Inspection, nok: tuple[bool, ...]) -> tuple[Drawn, QImage | None]:
-    """Picture and strip of an image (H, W) uint8; `nok`: refused segments. Raises LocateError if the ring is not wholly in view."""
+def judged(image: Image, inspection: Inspection) -> tuple[Drawn, QImage | None]:
+    """Return picture and strip of an image (H, W) uint8. Raises LocateError if the ring is not wholly in view."""
     preview = make_preview(0, image, inspection.ring)
     small = QImage.fromData(preview.frame_jpeg)
-    return Drawn(small, preview.scale, preview.origin_px, inspection.ring, nok, inspection.findings), strip_image(preview)
+    return Drawn(small, preview.scale, preview.origin_px, inspection.ring, inspection.nok, inspection.findings), strip_image(preview)
 
 
 def defect_map(settings: Settings, record: Record) -> tuple[int, QImage]:
-    """Number of the part, and where the network sees holes (red) and missing weld (yellow), to lay over the strip.
+    """Return the number of the part, and where the network sees each kind of defect in its colour, to lay over the strip.
 
     Raises ImageError, ModelError, SettingsError.
     """
@@ -56,10 +53,11 @@ def defect_map(settings: Settings, record: Record) -> tuple[int, QImage]:
     classifier = Classifier(for_recipe(settings, record.provenance.recipe).model.path)
     if classifier.card.file_hash != record.provenance.model_hash:
         raise ImageError("another model judged it: where that saw defects is not known")
-    maps = classifier(segments(unwrap(kept_frame(settings.archive.folder, record), record.inspection.ring))).maps  # (21, 2, 32, 32)
-    whole = np.concatenate(list(maps), axis=2)  # (2, 32, 672)
+    found = classifier(segments(unwrap(kept_frame(settings.archive.folder, record), record.inspection.ring)))
+    whole = whole_map(found.maps)  # (C, 32, 672)
     layer = np.zeros((*whole.shape[1:], 4), np.uint8)
-    for channel, rgb in ((whole[1], MISSING_RGB), (whole[0], HOLE_RGB)):
+    for kind, channel in reversed(list(zip(found.mapped, whole, strict=True))):
+        rgb = kind.color_rgb
         strong = channel > np.maximum(layer[..., 3] / 200, 0.05)
         layer[strong, :3] = rgb[::-1]
         layer[strong, 3] = (channel[strong] * 200).astype(np.uint8)
