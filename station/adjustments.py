@@ -2,13 +2,13 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeGuard
 
 from station.durable import sync_folder, write_durable
 from station.errors import SettingsError
-from station.filelock import FileLock
+from station.lock import hold
 from station.renamed_settings import with_new_names
 from station.settings import merged
 
@@ -84,13 +84,15 @@ def editing(settings: Path) -> Iterator[None]:
     """Nobody else changes anything meanwhile. Raises SettingsError if somebody does just now."""
     path = path_of(settings).with_suffix(".lock")
     try:
-        lock = FileLock(path)
+        lock = hold(path)
     except BlockingIOError:
         raise SettingsError("another window saves just now; save again") from None
     except OSError as error:
         raise SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None
-    with closing(lock):
+    try:
         yield
+    finally:
+        lock.release()
 
 
 def at(changes: Mapping[str, Any], place: Sequence[str]) -> object:

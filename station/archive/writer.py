@@ -13,8 +13,8 @@ from station.archive.schema import SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
 from station.durable import sync_folder, write_durable
 from station.errors import ImageError, RecordError
-from station.filelock import FileLock
 from station.imagefile import encode_png
+from station.lock import hold
 from station.records import Part, Provenance, Record, to_json
 from station.settings import ArchiveSettings
 
@@ -51,7 +51,7 @@ class Archive:
         """When a record could not be written; None: it goes well."""
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            self._lock = FileLock(self._folder / "engine.lock")
+            self._lock = hold(self._folder / "engine.lock")
         except BlockingIOError:
             raise RecordError(f"{self._folder}: another engine keeps its records there; stop it or set archive.folder") from None
         except OSError as error:
@@ -65,7 +65,7 @@ class Archive:
         except (OSError, sqlite3.Error, RecordError) as error:
             if hasattr(self, "_index"):
                 self._index.close()
-            self._lock.close()
+            self._lock.release()
             raise error if isinstance(error, RecordError) else self._unusable(error) from None
         self._encoder = ThreadPoolExecutor(1, "encode")
 
@@ -90,7 +90,7 @@ class Archive:
         """Finish and close the index."""
         self._encoder.shutdown(wait=True)
         self._index.close()
-        self._lock.close()
+        self._lock.release()
 
     def room(self) -> Room:
         """Room on the disk."""

@@ -1,0 +1,102 @@
+"""One process at a time: a lock held elsewhere refuses at once, and a killed holder leaves only a file behind."""
+
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from station import adjustments
+from station.archive.writer import Archive
+from station.errors import RecordError, SettingsError
+from station.lock import hold
+from station.settings import ArchiveSettings
+from tests.conftest import ROOT
+
+HOLDER = """
+import sys
+from pathlib import Path
+from station.lock import hold
+lock = hold(Path(sys.argv[1]))
+print("held", flush=True)
+sys.stdin.read()
+lock.release()
+"""
+
+
+@contextmanager
+def held_elsewhere(path: Path) -> Iterator["subprocess.Popen[str]"]:
+    """Another process that holds the lock until its input ends."""
+    command = [sys.executable, "-c", HOLDER, str(path)]
+    with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "held\n"
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def test_a_lock_held_by_another_process_is_refused_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "x.lock"
+    with held_elsewhere(path) as process:
+        begin = time.monotonic()
+        with pytest.raises(BlockingIOError, match="held by another process"):
+            hold(path)
+        assert time.monotonic() - begin < 1.0
+        process.communicate("", timeout=20)
+        hold(path).release()
+
+
+def test_a_killed_holder_leaves_a_file_and_no_lock(tmp_path: Path) -> None:
+    path = tmp_path / "x.lock"
+    with held_elsewhere(path) as process:
+        process.send_signal(signal.SIGKILL)
+        process.wait(timeout=20)
+    assert path.exists()
+    hold(path).release()
+
+
+def test_the_same_process_cannot_take_a_lock_twice(tmp_path: Path) -> None:
+    lock = hold(tmp_path / "x.lock")
+    with pytest.raises(BlockingIOError):
+        hold(tmp_path / "x.lock")
+    lock.release()
+    hold(tmp_path / "x.lock").release()
+
+
+def test_a_lock_may_be_released_by_another_thread(tmp_path: Path) -> None:
+    lock = hold(tmp_path / "x.lock")
+    other = threading.Thread(target=lock.release)
+    other.start()
+    other.join()
+    hold(tmp_path / "x.lock").release()
+
+
+def test_an_archive_in_use_is_refused_until_its_engine_is_gone(tmp_path: Path) -> None:
+    settings = ArchiveSettings(folder=tmp_path, min_free_mb=1, thin_free_mb=1, warn_free_mb=1)
+    with held_elsewhere(tmp_path / "engine.lock"):
+        with pytest.raises(RecordError) as caught:
+            Archive(settings)
+        assert str(caught.value) == f"{tmp_path}: another engine keeps its records there; stop it or set archive.folder"
+    Archive(settings).close()
+
+
+def test_changes_are_refused_while_another_window_saves(tmp_path: Path) -> None:
+    settings = tmp_path / "station.toml"
+    with (
+        held_elsewhere(tmp_path / "station.adjusted.lock"),
+        pytest.raises(SettingsError, match="another window saves just now"),
+        adjustments.editing(settings),
+    ):
+        pass
+    with adjustments.editing(settings):
+        pass
+    absent = tmp_path / "absent" / "station.toml"
+    with pytest.raises(SettingsError, match="cannot be written"), adjustments.editing(absent):
+        pass
