@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from station.domain import Verdict
+from station.durable import write_whole
 from station.plc.registers import REASON_CODES, VerdictCode
 from station.plc.simulated.line import Answer
 
@@ -130,6 +131,4 @@ def write_json(path: Path, judged: list[Judged], records: Path) -> None:
         "handshakes_complete": totals.handshakes_complete,
         "records": str(records),
     }
-    part = path.with_name(path.name + ".part")
-    part.write_text(json.dumps(report, indent=1))
-    part.replace(path)
+    write_whole(path, json.dumps(report, indent=1).encode())

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from station.durable import sync_folder, write_durable
+from station.durable import sync_folder, write_whole
 from station.errors import SettingsError
 from station.lock import hold
 from station.renamed_settings import with_new_names
@@ -114,7 +114,7 @@ def write(settings: Path, changes: dict[str, Any]) -> None:
     """Replace all changes at once, durably. Raises SettingsError."""
     path = path_of(settings)
     try:
-        write_durable(path, json.dumps(changes, indent=1, sort_keys=True).encode())
+        write_whole(path, json.dumps(changes, indent=1, sort_keys=True).encode(), durable=True)
         sync_folder(path.parent)
     except OSError as error:
         raise SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None

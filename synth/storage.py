@@ -1,24 +1,21 @@
-"""Files that are whole or absent: written beside, then renamed."""
+"""Files of datasets: whole or absent, with the errors of this room."""
 
 import json
-import os
 from pathlib import Path
 
 import cv2
 from numpy.typing import NDArray
 
+from station.durable import write_whole
 from synth.errors import SynthError
 
 
 def write_bytes(path: Path, content: bytes) -> None:
     """Write a file. Raises SynthError saying why it could not be."""
-    part = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(content)
-        os.replace(part, path)
+        write_whole(path, content)
     except OSError as error:
-        part.unlink(missing_ok=True)
         raise SynthError(f"{path}: could not be written: {error.strerror or error}") from None
 
 

@@ -14,6 +14,7 @@ from station.archive.reader import Listed
 from station.archive.review import Opinion, reviews
 from station.defects import KINDS, DefectKind, kind_of
 from station.domain import SEGMENTS, Inspection
+from station.durable import replacing
 from station.errors import ImageError, LocateError, RecordError
 from station.imagefile import encode_png, read_image
 from station.records import Record
@@ -46,7 +47,8 @@ def export(
             shutil.rmtree(target)
             return
     else:
-        {"csv": _csv, "json": _json, "parquet": _parquet, "dfq": _dfq}[form](target, good)
+        with replacing(target) as part:
+            {"csv": _csv, "json": _json, "parquet": _parquet, "dfq": _dfq}[form](part, good)
     yield from bad
 
 

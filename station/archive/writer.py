@@ -11,7 +11,7 @@ from pathlib import Path
 from station.archive.room import Disk, Room
 from station.archive.schema import SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
-from station.durable import sync_folder, write_durable
+from station.durable import sync_folder, write_whole
 from station.errors import ImageError, RecordError
 from station.imagefile import encode_png
 from station.lock import hold
@@ -107,7 +107,7 @@ class Archive:
         if time.monotonic() - self._failed_s < TRIAL_S:
             return False
         try:
-            write_durable(self._folder / "trial", b"")
+            write_whole(self._folder / "trial", b"", durable=True)
             (self._folder / "trial").unlink()
             self._index.execute("BEGIN IMMEDIATE")
             self._index.rollback()
@@ -127,7 +127,7 @@ class Archive:
         if self.room() is Room.FULL:
             return Picture(sha256, None)
         path = self._folder / INCOMING
-        write_durable(path, png)
+        write_whole(path, png, durable=True)
         return Picture(sha256, path)
 
     def commit(self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime) -> Record:
@@ -182,7 +182,7 @@ class Archive:
         )
         text = to_json(record)
         record_file = f"{day.name}/{inspection_id:08d}.json"
-        write_durable(self._folder / record_file, text)
+        write_whole(self._folder / record_file, text, durable=True)
         sync_folder(day)
         self._list(record, record_file, hashlib.sha256(text).hexdigest(), state)
         return record

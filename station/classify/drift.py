@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
+from station.durable import write_whole
 from station.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -64,9 +65,7 @@ _ADAPTER = TypeAdapter(Reference)
 
 def write_reference(path: Path, reference: Reference) -> None:
     """The whole file, or nothing. Raises OSError."""
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(_ADAPTER.dump_json(reference) + b"\n")
-    part.replace(path)
+    write_whole(path, _ADAPTER.dump_json(reference) + b"\n")
 
 
 def read_reference(path: Path, model_hash: str, size: int) -> Reference:

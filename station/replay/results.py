@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from station.durable import write_whole
+
 
 def write_json(path: Path, entries: dict[str, dict[str, Any]]) -> None:
     """Raises OSError."""
@@ -25,7 +27,5 @@ def write_csv(path: Path, entries: dict[str, dict[str, Any]]) -> None:
 
 
 def _write(path: Path, text: str) -> None:
-    """The whole file, or nothing; names that are no text come out escaped."""
-    part = path.with_name(path.name + ".new")
-    part.write_text(text, encoding="utf-8", errors="backslashreplace", newline="")
-    part.replace(path)
+    """Write the whole file or nothing; characters of file names that UTF-8 cannot hold are escaped."""
+    write_whole(path, text.encode("utf-8", "backslashreplace"))

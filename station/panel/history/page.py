@@ -11,6 +11,7 @@ from station.archive.export import export
 from station.archive.reader import Listed, Row, Wanted, find, read_records
 from station.archive.review import Opinion, Review, State, give, possible, reviews
 from station.domain import Verdict
+from station.durable import replacing
 from station.errors import RecordError, WeldgateError
 from station.panel.card import label
 from station.panel.dialogs import ask_file, ask_folder
@@ -244,10 +245,8 @@ class HistoryPage(Page):
             entries = _read(folder, numbers, told)
             if entries is None:
                 return ""
-            part = target.with_name(target.name + ".new")
-            part.unlink(missing_ok=True)
-            problems = list(export(entries, folder, part, "csv"))
-            part.replace(target)  # the dialog has asked
+            with replacing(target) as part:  # the dialog has asked
+                problems = list(export(entries, folder, part, "csv"))
             return f"{target}: {len(entries) - len(problems)}"
 
         self._work.start(translate("history", "table"), work)
