@@ -1,10 +1,8 @@
 """An evaluation as lines, JSON and a self-contained HTML page."""
 
 import base64
-import html
 import json
-from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
 from statistics import median
@@ -16,9 +14,28 @@ from models.crops import OK
 from models.evaluate import Evaluation
 from models.measures import ESCAPE_COST, calibration_error, count
 from station.classify.onnx import CLASSES
+from station.durable import write_whole
+from station.report.template import render
 from station.report.truth import interval
 
 SIZES_MM = (0.0, 0.15, 0.3, 0.6, 1.2, 1e9)
+TEMPLATE = Path(__file__).with_name("report.html.j2")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvaluationPage:
+    """What report.html.j2 lays out; images are PNG."""
+
+    title: str
+    facts: tuple[tuple[str, str], ...]
+    lines: tuple[str, ...]
+    curves_base64: str | None
+    """None: the truths are all alike."""
+    confusion_head: tuple[str, ...]
+    confusion: tuple[tuple[str, ...], ...]
+    defects: tuple[tuple[str, str, str], ...]
+    """Kind, length, how many were found."""
+    worst_base64: str | None
 
 
 def summary(found: Evaluation) -> dict[str, Any]:
@@ -118,44 +135,33 @@ def _percent(bounds: tuple[float, float]) -> str:
 
 
 def write_report(found: Evaluation, folder: Path, title: str, facts: dict[str, str]) -> None:
-    """`report.html` and `evaluation.json` in `folder`; `facts` say which files were judged by what."""
-    from models.figures import curves, sheet
-
+    """Write `report.html` and `evaluation.json` to `folder`; `facts` say which files were judged by what."""
     folder.mkdir(parents=True, exist_ok=True)
     figures = summary(found)
-    (folder / "evaluation.json").write_text(json.dumps({**facts, **figures}, indent=1) + "\n")
+    write_whole(folder / "evaluation.json", (json.dumps({**facts, **figures}, indent=1) + "\n").encode())
+    write_whole(folder / "report.html", render(TEMPLATE, _page(found, figures, title, facts)).encode())
+
+
+def _page(found: Evaluation, figures: dict[str, Any], title: str, facts: dict[str, str]) -> EvaluationPage:
+    from models.figures import curves, sheet
+
     nok, truth = 1 - found.scores[:, OK], found.labels != OK
-    sections = [f"<h1>{html.escape(title)}</h1>", _table([*facts.items()]), "<ul>"]
-    sections += [f"<li>{html.escape(line)}</li>" for line in lines(found)] + ["</ul>"]
-    if truth.any() and not truth.all():
-        sections.append(_image(curves(nok, truth, ESCAPE_COST), "curves"))
-    sections.append("<h2>Segments: truth against what was said</h2>")
-    confusion = figures["segments"]["confusion"]
-    sections.append(_table([(name, *map(str, row.values())) for name, row in confusion.items()], ("", *CLASSES)))
-    if figures.get("defects"):
-        sections.append("<h2>Defects found, by kind and length</h2>")
-        rows = [(d["kind"], _span(d), f"{d['found']} of {d['of']}") for d in figures["defects"]]
-        sections.append(_table(rows, ("kind", "length", "found")))
-    if found.worst:
-        titles = [f"{w.name}\n{CLASSES[w.label]}: score of NOK {w.nok:.2f}" for w in found.worst]
-        sections.append("<h2>Worst crops: farthest from their truth first</h2>")
-        sections.append(_image(sheet([w.image for w in found.worst], titles), "worst crops"))
-    style = (
-        "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}"
-        "table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #bbb;padding:.25em .7em;text-align:left}img{max-width:100%}"
+    titles = [f"{w.name}\n{CLASSES[w.label]}: score of NOK {w.nok:.2f}" for w in found.worst]
+    return EvaluationPage(
+        title=title,
+        facts=tuple(facts.items()),
+        lines=tuple(lines(found)),
+        curves_base64=_base64(curves(nok, truth, ESCAPE_COST)) if truth.any() and not truth.all() else None,
+        confusion_head=("", *CLASSES),
+        confusion=tuple((name, *map(str, row.values())) for name, row in figures["segments"]["confusion"].items()),
+        defects=tuple((d["kind"], _span(d), f"{d['found']} of {d['of']}") for d in figures.get("defects", ())),
+        worst_base64=_base64(sheet([w.image for w in found.worst], titles)) if found.worst else None,
     )
-    page = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{html.escape(title)}</title><style>{style}</style>'
-    (folder / "report.html").write_text(page + "\n".join(sections) + "</html>\n", encoding="utf-8")
 
 
 def _span(row: dict[str, Any]) -> str:
     return f"from {row['from_mm']:g} mm" if row["to_mm"] is None else f"{row['from_mm']:g} to {row['to_mm']:g} mm"
 
 
-def _table(rows: Sequence[tuple[str, ...]], head: tuple[str, ...] = ()) -> str:
-    top = "<tr>" + "".join(f"<th>{html.escape(h)}</th>" for h in head) + "</tr>" if head else ""
-    return "<table>" + top + "".join("<tr>" + "".join(f"<td>{html.escape(c)}</td>" for c in row) + "</tr>" for row in rows) + "</table>"
-
-
-def _image(content: bytes, name: str) -> str:
-    return f'<p><img alt="{name}" src="data:image/png;base64,{base64.b64encode(content).decode()}"></p>'
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode()

@@ -1,6 +1,7 @@
-"""Small figures as SVG text; pure."""
+"""Small figures of a report as plain data, which the templates draw as SVG; pure."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import cos, pi, sin
 
 from station.domain import SEGMENT_DEG, SEGMENTS
@@ -8,23 +9,91 @@ from station.domain import SEGMENT_DEG, SEGMENTS
 GOOD, BAD, GREY, TEXT = "#2e8b57", "#c0392b", "#b8bcc2", "#23272d"
 
 
-def clock_face(counts: Sequence[int]) -> str:
-    """NOK segments by where they lie on the weld: 21 sectors, angle 0 at the right, clockwise as in the picture."""
-    most, parts = max([*counts, 1]), []
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A short text at a place in a figure."""
+
+    x_px: float
+    y_px: float
+    text: str
+    anchor: str = "middle"
+    colour: str = TEXT
+
+
+@dataclass(frozen=True, slots=True)
+class Sector:
+    """A part of a ring, as the path of its outline."""
+
+    path: str
+    colour: str
+
+
+@dataclass(frozen=True, slots=True)
+class ClockFace:
+    """How often each of the 21 segments was NOK, by where they lie on the weld."""
+
+    sectors: tuple[Sector, ...]
+    labels: tuple[Label, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """One bar, from the left."""
+
+    y_px: int
+    length_px: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """Horizontal bars with their names and numbers."""
+
+    height_px: int
+    bars: tuple[Bar, ...]
+    labels: tuple[Label, ...]
+    colour: str = BAD
+
+
+@dataclass(frozen=True, slots=True)
+class Dot:
+    """One value of a trend."""
+
+    x_px: float
+    y_px: float
+    colour: str
+
+
+@dataclass(frozen=True, slots=True)
+class Trend:
+    """One value for each part in their order, above an axis from 0 to `top`."""
+
+    name: str
+    top: str
+    limit_y_px: float | None
+    """Height of the dashed line; None: there is no limit."""
+    dots: tuple[Dot, ...]
+    colour: str = TEXT
+    axis_colour: str = GREY
+
+
+def clock_face(counts: Sequence[int]) -> ClockFace:
+    """Lay out the counts of 21 segments as sectors: angle 0 at the right, clockwise as in the image."""
+    most, sectors, labels = max([*counts, 1]), [], []
     for index, count in enumerate(counts):
         start, end = (pi / 180 * SEGMENT_DEG * (index + k) for k in (0.06, 0.94))
         inner, outer = 70.0, 70.0 + 60.0 * count / most
         middle = (start + end) / 2
-        colour = BAD if count else GREY
-        for low, high, fill in ((64.0, 69.0, GREY), (inner, outer, colour)):
+        for low, high, colour in ((64.0, 69.0, GREY), (inner, outer, BAD)):
             if high > low:
-                parts.append(f'<path d="{_sector(low, high, start, end)}" fill="{fill}"/>')
-        x, y = 150 + 50 * cos(middle), 150 + 50 * sin(middle)
-        parts.append(f'<text x="{x:.1f}" y="{y + 4:.1f}" text-anchor="middle" font-size="11" fill="{TEXT}">{index + 1}</text>')
+                sectors.append(Sector(_sector(low, high, start, end), colour))
+        labels.append(_at(50, middle, str(index + 1), TEXT))
         if count:
-            x, y = 150 + (outer + 11) * cos(middle), 150 + (outer + 11) * sin(middle)
-            parts.append(f'<text x="{x:.1f}" y="{y + 4:.1f}" text-anchor="middle" font-size="11" fill="{BAD}">{count}</text>')
-    return f'<svg viewBox="0 0 300 300" width="300" role="img" aria-label="NOK segments by angle">{"".join(parts)}</svg>'
+            labels.append(_at(outer + 11, middle, str(count), BAD))
+    return ClockFace(tuple(sectors), tuple(labels))
+
+
+def _at(radius_px: float, angle: float, text: str, colour: str) -> Label:
+    return Label(150 + radius_px * cos(angle), 154 + radius_px * sin(angle), text, colour=colour)
 
 
 def _sector(inner: float, outer: float, start: float, end: float) -> str:
@@ -33,36 +102,30 @@ def _sector(inner: float, outer: float, start: float, end: float) -> str:
     return f"M{a}A{outer:.1f} {outer:.1f} 0 0 1 {b}L{c}A{inner:.1f} {inner:.1f} 0 0 0 {d}Z"
 
 
-def bars(named: Sequence[tuple[str, int]]) -> str:
-    """Horizontal bars with their numbers, the longest first."""
+def bars(named: Sequence[tuple[str, int]]) -> Bars:
+    """Lay out counts as horizontal bars, the longest first."""
     rows = sorted(named, key=lambda item: -item[1])
-    most, height = max([count for _, count in rows] + [1]), 26 * len(rows) + 6
-    parts = []
+    most = max([count for _, count in rows] + [1])
+    drawn, labels = [], []
     for i, (name, count) in enumerate(rows):
-        y = 26 * i + 4
-        parts.append(f'<text x="150" y="{y + 15}" text-anchor="end" font-size="13" fill="{TEXT}">{name}</text>')
-        parts.append(f'<rect x="160" y="{y}" width="{300 * count / most:.1f}" height="20" fill="{BAD}"/>')
-        parts.append(f'<text x="{168 + 300 * count / most:.1f}" y="{y + 15}" font-size="13" fill="{TEXT}">{count}</text>')
-    return f'<svg viewBox="0 0 520 {height}" width="520" role="img" aria-label="counts">{"".join(parts)}</svg>'
+        y_px, length_px = 26 * i + 4, 300 * count / most
+        drawn.append(Bar(y_px, length_px))
+        labels.append(Label(150, y_px + 15, name, "end"))
+        labels.append(Label(168 + length_px, y_px + 15, str(count), "start"))
+    return Bars(26 * len(rows) + 6, tuple(drawn), tuple(labels))
 
 
-def trend(values: Sequence[float | None], bad: Sequence[bool], name: str, limit: float | None = None) -> str:
-    """One value a part in order; `bad` parts are red, a limit is dashed."""
+def trend(values: Sequence[float | None], bad: Sequence[bool], name: str, limit: float | None = None) -> Trend:
+    """Lay out one value for each part in their order; `bad` parts are red, a limit is dashed."""
     known = [v for v in values if v is not None] + ([] if limit is None else [limit])
     top = max([*known, 1e-9]) * 1.08
     step = 460 / max(len(values) - 1, 1)
-    dots = []
-    for i, (value, red) in enumerate(zip(values, bad, strict=True)):
-        if value is not None:
-            dots.append(f'<circle cx="{45 + step * i:.1f}" cy="{130 - 115 * value / top:.1f}" r="2" fill="{BAD if red else GOOD}"/>')
-    line = ""
-    if limit is not None:
-        y = 130 - 115 * limit / top
-        line = f'<line x1="45" x2="505" y1="{y:.1f}" y2="{y:.1f}" stroke="{TEXT}" stroke-dasharray="5 4"/>'
-    axis = f'<path d="M45 15V130H505" fill="none" stroke="{GREY}"/><text x="40" y="22" text-anchor="end" font-size="11">{top:.3g}</text>'
-    title = f'<text x="45" y="11" font-size="12" font-weight="600" fill="{TEXT}">{name}</text>'
-    zero = '<text x="40" y="132" text-anchor="end" font-size="11">0</text>'
-    return f'<svg viewBox="0 0 520 140" width="520" role="img" aria-label="{name}">{title}{axis}{zero}{line}{"".join(dots)}</svg>'
+    dots = tuple(
+        Dot(45 + step * i, 130 - 115 * value / top, BAD if red else GOOD)
+        for i, (value, red) in enumerate(zip(values, bad, strict=True))
+        if value is not None
+    )
+    return Trend(name, f"{top:.3g}", None if limit is None else 130 - 115 * limit / top, dots)
 
 
 def angle_counts(nok: Sequence[Sequence[bool]]) -> list[int]:

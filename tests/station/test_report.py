@@ -13,7 +13,7 @@ from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose
 from station.records import Part
-from station.report.figures import angle_counts, bars, clock_face, trend
+from station.report.figures import BAD, TEXT, angle_counts, bars, clock_face, trend
 from station.settings import ArchiveSettings
 from tests.parts import label_with, nok_inspection, ok_inspection, provenance
 
@@ -74,6 +74,10 @@ def test_no_parts_and_no_place_are_one_line(folder: Path, tmp_path: Path, capsys
 def test_figures_hold_for_any_counts(parts: list[list[bool]]) -> None:
     counts = angle_counts(parts)
     assert sum(counts) == sum(map(sum, parts))
-    face = clock_face(counts)
-    assert all(f">{i}</text>" in face for i in range(1, SEGMENTS + 1))
-    assert "nan" not in face + bars([("hole", sum(counts))]) + trend([None, *map(float, counts)], [True] * (SEGMENTS + 1), "x", 0.5)
+    face, chart = clock_face(counts), bars([("hole", sum(counts))])
+    assert [label.text for label in face.labels if label.colour == TEXT] == [str(i) for i in range(1, SEGMENTS + 1)]
+    assert [label.text for label in face.labels if label.colour == BAD] == [str(count) for count in counts if count]
+    assert len(face.sectors) == SEGMENTS + sum(count > 0 for count in counts)
+    line = trend([None, *map(float, counts)], [True] * (SEGMENTS + 1), "x", 0.5)
+    places = [value for at in (*face.labels, *chart.labels, *line.dots) for value in (at.x_px, at.y_px)]
+    assert all(0 <= value <= 520 for value in places)
