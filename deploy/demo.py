@@ -25,6 +25,7 @@ from rich.console import Console
 from deploy.summary import DemoPart, Judged, count, summarise, tell, write_json
 from station.errors import LineError, WeldgateError
 from station.plc.simulated.line import SimulatedLine
+from station.process import room_command
 from synth.errors import SynthError
 from synth.feed import Feed
 
@@ -74,12 +75,10 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
         fresh = max(0, arguments.parts - len(shipped_parts()))
         renderer = stack.enter_context(_renderer(folder / "fresh", fresh, arguments.seed)) if fresh else None
         environment = {**os.environ, **feed.environment}
-        engine = stack.enter_context(running([sys.executable, "-m", "station", "engine", "-c", str(settings)], environment, log))
+        engine = stack.enter_context(running([*room_command("station"), "engine", "-c", str(settings)], environment, log))
         if window:
             panel_log = stack.enter_context((folder / "panel.log").open("w"))
-            panel = stack.enter_context(
-                running([sys.executable, "-m", "station", "panel", "-c", str(settings)], dict(os.environ), panel_log)
-            )
+            panel = stack.enter_context(running([*room_command("station"), "panel", "-c", str(settings)], dict(os.environ), panel_log))
             time.sleep(1.0)
             if panel.poll() is not None:
                 console.print(f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]")
@@ -154,8 +153,8 @@ def running(command: list[str], environment: dict[str, str], log: object) -> "It
 
 @contextmanager
 def _renderer(out: Path, count: int, seed: int) -> "Iterator[subprocess.Popen[bytes]]":
-    command = [sys.executable, "-m", "synth", "part", "--out", str(out), "--count", str(count), "--seed", str(seed)]
-    with running(command, dict(os.environ), subprocess.DEVNULL) as process:
+    render = [*room_command("synth"), "part", "--out", str(out), "--count", str(count), "--seed", str(seed)]
+    with running(render, dict(os.environ), subprocess.DEVNULL) as process:
         yield process
 
 

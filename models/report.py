@@ -146,6 +146,7 @@ def _page(found: Evaluation, figures: dict[str, Any], title: str, facts: dict[st
     from models.figures import curves, sheet
 
     nok, truth = 1 - found.scores[:, OK], found.labels != OK
+    confusion, defects = figures["segments"]["confusion"], figures.get("defects", ())
     titles = [f"{w.name}\n{CLASSES[w.label]}: score of NOK {w.nok:.2f}" for w in found.worst]
     return EvaluationPage(
         title=title,
@@ -153,8 +154,8 @@ def _page(found: Evaluation, figures: dict[str, Any], title: str, facts: dict[st
         lines=tuple(lines(found)),
         curves_base64=_base64(curves(nok, truth, ESCAPE_COST)) if truth.any() and not truth.all() else None,
         confusion_head=("", *CLASSES),
-        confusion=tuple((name, *map(str, row.values())) for name, row in figures["segments"]["confusion"].items()),
-        defects=tuple((d["kind"], _span(d), f"{d['found']} of {d['of']}") for d in figures.get("defects", ())),
+        confusion=tuple((name, *map(str, row.values())) for name, row in confusion.items()),
+        defects=tuple((d["kind"], _span(d), f"{d['found']} of {d['of']}") for d in defects),
         worst_base64=_base64(sheet([w.image for w in found.worst], titles)) if found.worst else None,
     )
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from station import __version__
 from station.errors import WeldgateError
+from station.process import room_command
 from station.records_command import add_commands
 
 SETTINGS = Path("station.toml")
@@ -110,8 +111,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
     load(arguments.settings)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    module = [sys.executable, "-m", "station"]
-    panel = subprocess.Popen([*module, "panel", "-c", str(arguments.settings)])
+    panel = subprocess.Popen([*room_command("station"), "panel", "-c", str(arguments.settings)])
     try:
         return _engine(arguments)
     finally:

@@ -49,7 +49,11 @@ def _parser() -> argparse.ArgumentParser:
     dataset.add_argument("--flat", action="store_true", help="the paper's straight crops; else arcs of rings as the station cuts them")
     dataset.add_argument("--heights", action="store_true", help="height maps beside the images")
     dataset.add_argument("--workers", type=int, default=os.cpu_count() or 1, metavar="N", help="processes (default: %(default)s)")
-    dataset.add_argument("--scheduler", metavar="ADDRESS", help="send the work to a Dask cluster, as tcp://host:8786")
+    dataset.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="send the work to a Dask cluster started with --preload weldgate",
+    )
     _recipe_options(dataset, "wide")
     _off_option(dataset)
     dataset.set_defaults(command=_dataset)

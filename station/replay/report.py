@@ -18,7 +18,10 @@ from station.report.truth import Errors, errors
 
 SHOWN = 40
 """Pictures of each kind."""
-FLIPS = (("NOK", "OK", "NOK on the line, OK now: would be released"), ("OK", "NOK", "OK on the line, NOK now"))
+FLIPS = (
+    ("NOK", "OK", "NOK on the line, OK now: would be released"),
+    ("OK", "NOK", "OK on the line, NOK now"),
+)
 TEMPLATE = Path(__file__).with_name("report.html.j2")
 
 
@@ -72,7 +75,7 @@ def write_page(
         ),
         line=None if comparison is None else _against_line(comparison, welds),
         truth=None if found is None else truth_rows(found),
-        wrong=() if found is None else welds.galleries(("Escapes", found.escapes), ("False rejects", found.false_rejects)),
+        wrong=() if found is None else _wrong(found, welds),
         problems=tuple(problems),
     )
     folder.mkdir(parents=True, exist_ok=True)
@@ -84,7 +87,10 @@ def write_page(
 def _errors(truth: Mapping[str, str], entries: Mapping[str, dict[str, Any]]) -> Errors:
     """A truth may name files with or without their folder and ending."""
     names = {key: name for name in entries for key in (Path(name).stem, Path(name).name, name)}
-    return errors({names[key]: true for key, true in truth.items() if key in names}, {name: e["verdict"] for name, e in entries.items()})
+    return errors(
+        {names[key]: true for key, true in truth.items() if key in names},
+        {name: e["verdict"] for name, e in entries.items()},
+    )
 
 
 def _against_line(comparison: Comparison, welds: "_Welds") -> AgainstLine:
@@ -96,6 +102,10 @@ def _against_line(comparison: Comparison, welds: "_Welds") -> AgainstLine:
         tuple(f"{f.name}: {f.before} to {f.now}" for f in comparison.flips if "ERROR" in (f.before, f.now)),
         tuple(comparison.not_alike),
     )
+
+
+def _wrong(found: Errors, welds: "_Welds") -> tuple[Gallery, ...]:
+    return welds.galleries(("Escapes", found.escapes), ("False rejects", found.false_rejects))
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,9 +123,13 @@ class _Welds:
 
     def _weld(self, name: str) -> Weld:
         entry = self.entries[name]
-        center, worst = entry.get("center"), max((s for s in entry["segments"] if s is not None), default=None)
+        center, worst = (
+            entry.get("center"),
+            max((s for s in entry["segments"] if s is not None), default=None),
+        )
         ring = None if center is None else Ring(center[0], center[1], entry["radius"], 1.0)
         found = "; ".join(f"{f['kind']} at {f['start_deg']:.0f}°, {f['length_mm']:.2f} mm long" for f in entry["findings"])
-        said = ", ".join(text for text in (entry["reason"] or "", "" if worst is None else f"worst score {worst:.3f}", found) if text)
+        score = "" if worst is None else f"worst score {worst:.3f}"
+        said = ", ".join(text for text in (entry["reason"] or "", score, found) if text)
         spans = ((f["start_deg"], f["end_deg"]) for f in entry["findings"])
         return Weld(name, f"{entry['verdict']}: {said}", strip(self.pictures[name], ring, spans))

@@ -50,16 +50,19 @@ class ReportPage:
 
 
 def report(entries: Sequence[Listed], folder: Path, title: str, truth: Mapping[str, str] | None = None) -> str:
-    """Return the page as HTML text; `truth`: what the serials are. Raises RecordError if no part is among the entries."""
+    """Return the page as HTML text; `truth`: what the serials are.
+
+    Raises RecordError if no part is among the entries.
+    """
     unreadable = [(e.path, e.problem) for e in entries if e.problem is not None]
     records = [e.record for e in entries if e.record is not None and e.record.purpose is Purpose.PART]
     if not records:
         raise RecordError(f"{folder}: no parts among the chosen records; choose others")
-    not_shown = sum(e.shown_to_plc is False for e in entries if e.record is not None and e.record.purpose is Purpose.PART)
+    parts = [e for e in entries if e.record is not None and e.record.purpose is Purpose.PART]
     found = None if truth is None else _against_truth(records, truth)
     page = ReportPage(
         title=title,
-        summary=_summary(records, not_shown),
+        summary=_summary(records, sum(e.shown_to_plc is False for e in parts)),
         truth=None if found is None else truth_rows(found),
         wrong=() if found is None else _wrong(records, folder, found),
         found=_found(records),
@@ -127,8 +130,17 @@ def _trends(records: Sequence[Record]) -> tuple[Trend, ...]:
     inspections = [record.inspection for record in records]
     limit = records[-1].provenance.thresholds.lowest
     return (
-        trend([max((s.nok for s in i.scores), default=None) for i in inspections], bad, "worst score of NOK", limit),
-        trend([None if i.quality is None else i.quality.mean_dn for i in inspections], bad, "brightness, grey levels"),
+        trend(
+            [max((s.nok for s in i.scores), default=None) for i in inspections],
+            bad,
+            "worst score of NOK",
+            limit,
+        ),
+        trend(
+            [None if i.quality is None else i.quality.mean_dn for i in inspections],
+            bad,
+            "brightness, grey levels",
+        ),
         trend([None if i.quality is None else i.quality.sharpness for i in inspections], bad, "sharpness"),
         trend([i.novelty for i in inspections], bad, "distance to the training images"),
     )
@@ -160,6 +172,14 @@ def _strip(record: Record, folder: Path) -> StripImage:
 def _judges(records: Sequence[Record]) -> tuple[tuple[str, ...], ...]:
     judges = Counter(record.provenance for record in records)
     return tuple(
-        (str(count), p.software, str(p.recipe), p.model_version, p.model_hash[:16], p.limits, str(p.config_crc))
+        (
+            str(count),
+            p.software,
+            str(p.recipe),
+            p.model_version,
+            p.model_hash[:16],
+            p.limits,
+            str(p.config_crc),
+        )
         for p, count in judges.items()
     )

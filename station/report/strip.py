@@ -54,4 +54,6 @@ def strip(picture: Path | None, ring: Ring | None, spans_deg: Iterable[tuple[flo
         for turn in (0, STRIP_COLUMNS):
             cv2.rectangle(image, (left + 2 - turn, 2), (right - 3 - turn, image.shape[0] - 3), MARK_BGR, 4)
     done, jpeg = cv2.imencode(".jpg", np.asarray(image), [cv2.IMWRITE_JPEG_QUALITY, 80])
-    return StripImage(base64.b64encode(bytes(jpeg)).decode()) if done else StripImage(missing="its picture cannot be shown")
+    if not done:
+        return StripImage(missing="its picture cannot be shown")
+    return StripImage(base64.b64encode(bytes(jpeg)).decode())

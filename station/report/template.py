@@ -1,6 +1,6 @@
 """HTML from templates, through Jinja; the only file that imports it.
 
-A template lies next to the code that fills it. All share layout.html.j2, parts.html.j2 and style.css of this folder.
+A template lies next to the code that fills it. All share layout.html.j2, parts.html.j2 and style.css in here.
 """
 
 import re
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).resolve().parent
 UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-"""Characters that a page cannot hold or that change what is read: controls, marks of direction, half code points."""
+"""Characters that a page cannot hold or that change how it reads: controls, direction marks, surrogates."""
 
 
 def render(template: Path, page: object) -> str:
-    """Fill a template, in which `page` is the only name. What is filled in is escaped, wherever it comes from."""
+    """Fill a template, in which `page` is the only name. All that is filled in is escaped."""
     return _templates(template.parent).get_template(template.name).render(page=page)
 
 

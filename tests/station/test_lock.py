@@ -1,4 +1,4 @@
-"""One process at a time: a lock held elsewhere refuses at once, and a killed holder leaves only a file behind."""
+"""One process at a time: a lock held elsewhere refuses at once, a killed holder leaves only a file."""
 
 import signal
 import subprocess

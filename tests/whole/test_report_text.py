@@ -1,4 +1,4 @@
-"""Text in the three reports: whatever a serial, a file name or a title holds, it is shown and never becomes markup."""
+"""Text in the three reports: whatever a serial, file name or title holds is shown and never becomes markup."""
 
 import json
 import re
@@ -35,7 +35,25 @@ HOSTILE = '<script>alert(\'1\')</script>" onload="x" \x00\x1b[2J\n\u202e&lt;{{ p
 SHOWN = '<script>alert(\'1\')</script>" onload="x" \\x00\\x1b[2J\\n\\u202e&lt;{{ page }}'
 FILE = "\"><img src=x onerror='alert(1)'>\x1b\udcff&amp;.png"
 FILE_SHOWN = "\"><img src=x onerror='alert(1)'>\\x1b\\udcff&amp;.png"
-ELEMENTS = {"html", "head", "meta", "title", "style", "body", "h1", "h2", "h3", "p", "b", "ul", "li", "table", "tr", "th", "td"}
+ELEMENTS = {
+    "html",
+    "head",
+    "meta",
+    "title",
+    "style",
+    "body",
+    "h1",
+    "h2",
+    "h3",
+    "p",
+    "b",
+    "ul",
+    "li",
+    "table",
+    "tr",
+    "th",
+    "td",
+}
 ELEMENTS |= {"div", "figure", "figcaption", "img", "svg", "path", "rect", "text", "line", "circle"}
 
 
@@ -77,7 +95,7 @@ def evaluation(tmp_path_factory: pytest.TempPathFactory) -> Evaluation:
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory, frames: dict[str, Image], evaluation: Evaluation) -> Pages:
-    """The three reports, from real records, images and networks, hostile wherever a person may name something."""
+    """The three reports, from real records, images and networks, with hostile names throughout."""
     folder = tmp_path_factory.mktemp("pages")
     given: dict[Path, object] = {}
     with pytest.MonkeyPatch.context() as patch:
@@ -112,7 +130,10 @@ def _records(folder: Path, image: Image) -> Path:
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     judge = replace(provenance(), software=HOSTILE, model_version=HOSTILE, model_hash=HOSTILE)
     for number, inspection in enumerate((ok_inspection(), nok_inspection(), Inspection.error(Reason.NO_WELD_FOUND))):
-        part, frame = Part(f"{HOSTILE}{number}", number + 1, Origin.SIMULATED), Frame(image, NOON, "cam", Origin.SIMULATED)
+        part, frame = (
+            Part(f"{HOSTILE}{number}", number + 1, Origin.SIMULATED),
+            Frame(image, NOON, "cam", Origin.SIMULATED),
+        )
         archive.commit(archive.begin(frame), inspection, part, judge, NOON)
     archive.close()
     next(folder.rglob("00000003.png")).write_bytes(b"x")

@@ -1,0 +1,1 @@
+"""How the rooms become one package to install."""
