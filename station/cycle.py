@@ -19,7 +19,7 @@ from station.domain import Frame, Inspection, Origin, Purpose, Timing
 from station.errors import LineError, WeldgateError
 from station.events import PartEvent, StatusEvent
 from station.listener import Listener
-from station.plc.handshake import ERROR_DEADLINE
+from station.plc.codes import ERROR_DEADLINE
 from station.plc.port import Command, Health, Line, Trigger
 from station.plc.registers import STATUS_START, Offline, Status, VerdictCode, word
 from station.preview import make_preview

@@ -10,6 +10,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from station.defects import kind_named
 from station.domain import Origin
 from station.errors import SettingsError
+from station.register_windows import COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS
 
 Port = Annotated[int, Field(ge=1, le=65535)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -143,8 +144,8 @@ class PlcSettings(Section):
     """server: our address; client: the PLC's."""
     port: Port = 1502
     unit: int = Field(default=1, ge=0, le=255)
-    command_base: int = Field(default=0, ge=0, le=65536 - 23)
-    status_base: int = Field(default=100, ge=0, le=65536 - 76)
+    command_base: int = Field(default=COMMAND_START, ge=0, le=65536 - COMMAND_WORDS)
+    status_base: int = Field(default=STATUS_START, ge=0, le=65536 - STATUS_WORDS)
     """Addresses of the windows in the PLC (client)."""
     poll_ms: int = Field(default=20, ge=5, le=1000)
     timeout_ms: int = Field(default=400, ge=50, le=5000)
@@ -164,9 +165,11 @@ class PlcSettings(Section):
 
     @model_validator(mode="after")
     def _windows_apart(self) -> "PlcSettings":
-        command, status = (range(base, base + words) for base, words in ((self.command_base, 23), (self.status_base, 76)))
+        command = range(self.command_base, self.command_base + COMMAND_WORDS)
+        status = range(self.status_base, self.status_base + STATUS_WORDS)
         if command.start < status.stop and status.start < command.stop:
-            raise ValueError(f"command_base {command.start} and status_base {status.start}: windows of 23 and 76 registers overlap")
+            sizes = f"windows of {COMMAND_WORDS} and {STATUS_WORDS} registers overlap"
+            raise ValueError(f"command_base {command.start} and status_base {status.start}: {sizes}")
         return self
 
 

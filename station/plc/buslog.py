@@ -11,8 +11,8 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from station.errors import RecordError
-from station.plc.handshake import ERROR_BAD_TRIGGER_ID, ERROR_STUCK_BIT
-from station.plc.registers import Control, Offline, Status, Value, VerdictCode, number
+from station.plc.codes import ERROR_BAD_TRIGGER_ID, ERROR_STUCK_BIT
+from station.plc.registers import Control, Offline, Status, Value, VerdictCode, named_bits, number
 
 log = logging.getLogger("weldgate.bus")
 
@@ -43,8 +43,8 @@ class Edge:
 def edges(time_s: float, command: tuple[Values, Values], status: tuple[Values, Values]) -> Iterator[Edge]:
     """Changes between two looks (before, after) at the windows."""
     when = datetime.fromtimestamp(time_s, UTC).isoformat(timespec="milliseconds")
-    held, sent = (Control(number(values, "CONTROL") & 0xFF) for values in command)
-    said, says = (Status(number(values, "STATUS")) for values in status)
+    held, sent = (named_bits(Control, number(values, "CONTROL")) for values in command)
+    said, says = (named_bits(Status, number(values, "STATUS")) for values in status)
     for bit in Control:
         if (held ^ sent) & bit:
             yield Edge(when, "PLC", str(bit.name), int(bool(sent & bit)), _plc_note(bit, bool(sent & bit), said))

@@ -16,15 +16,11 @@ from enum import StrEnum
 
 from station.defects import Reason
 from station.domain import SEGMENTS
+from station.plc.codes import ERROR_ABORTED, ERROR_BAD_TRIGGER_ID, ERROR_DEADLINE, ERROR_LINK_LOST, ERROR_STUCK_BIT
 from station.plc.port import Command, Health, Result, Trigger
-from station.plc.registers import REASON_CODES, REFUSED, CommandCode, Control, Flags, Offline, VerdictCode
+from station.plc.registers import REASON_CODES, REFUSED, CommandCode, Control, Flags, Offline, VerdictCode, all_bits
 
-ERROR_DEADLINE = 0x2101
-ERROR_ABORTED = 0x2102
-ERROR_BAD_TRIGGER_ID = 0x2103
-ERROR_STUCK_BIT = 0x2104
-ERROR_LINK_LOST = 0x2105
-ALL_CONTROL = Control(0xFF)
+ALL_CONTROL = all_bits(Control)
 ALL_SEGMENTS = (1 << SEGMENTS) - 1
 
 

@@ -23,6 +23,8 @@ from station.plc.registers import (
     Offline,
     Value,
     VerdictCode,
+    all_bits,
+    named_bits,
     number,
     pack_window,
     unpack_window,
@@ -72,7 +74,7 @@ class ModbusLine:
         self._state = State()
         self._health, self._health_s = Health(False, Offline.STARTING, False, 0), -1e9
         self._counts = {VerdictCode.OK: 0, VerdictCode.NOK: 0, VerdictCode.ERROR: 0}
-        self._command_words = [0xFF] + [0] * (COMMAND_WORDS - 1)
+        self._command_words = [int(all_bits(Control))] + [0] * (COMMAND_WORDS - 1)
         self._command = unpack_window(COMMAND_START, self._command_words)
         self._exposed: int | None = None
         self._offered: Offer | None = None
@@ -231,7 +233,7 @@ class ModbusLine:
         exposed, self._exposed = self._exposed, None
         done, self._done = self._done, None
         return Inputs(
-            control=Control(number(command, "CONTROL") & 0xFF),
+            control=named_bits(Control, number(command, "CONTROL")),
             plc_heartbeat=number(command, "PLC_HEARTBEAT"),
             trigger_id=number(command, "TRIGGER_ID"),
             serial=str(command["PART_SERIAL"]),

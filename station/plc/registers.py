@@ -7,16 +7,21 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum, IntFlag
-from typing import Literal
+from functools import reduce
+from operator import or_
+from typing import Literal, TypeVar
 
 from station.defects import Reason
 from station.domain import SEGMENTS
+from station.register_windows import COMMAND_START as COMMAND_START
+from station.register_windows import COMMAND_WORDS as COMMAND_WORDS
+from station.register_windows import STATUS_START as STATUS_START
+from station.register_windows import STATUS_WORDS as STATUS_WORDS
 
 Kind = Literal["u16", "u32", "f32", "ascii"]
 Value = int | float | str | tuple[int, ...]
+Bits = TypeVar("Bits", bound=IntFlag)
 
-COMMAND_START, COMMAND_WORDS = 0, 23
-STATUS_START, STATUS_WORDS = 100, 76
 TEST_U32, TEST_F32 = 0x12345678, 123.456
 MAP_VERSION = 2
 
@@ -246,6 +251,19 @@ def reordered(start: int, words: list[int]) -> list[int]:
         if r.kind in ("u32", "f32") and 0 <= at and at + r.words <= len(words):
             answer[at], answer[at + 1] = words[at + 1], words[at]
     return answer
+
+
+def all_bits(flags: type[Bits]) -> Bits:
+    """Return all bits that have a name in `flags`."""
+    return flags(reduce(or_, map(int, flags), 0))
+
+
+def named_bits(flags: type[Bits], register: int) -> Bits:
+    """Return the bits of a register that have a name in `flags`; a bit without a name is ignored on purpose.
+
+    The only place that masks CONTROL, STATUS and FLAGS: a bit that is added to the enum passes everywhere.
+    """
+    return flags(register & all_bits(flags))
 
 
 def number(values: dict[str, Value], name: str) -> int:

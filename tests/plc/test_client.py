@@ -166,7 +166,7 @@ def test_a_wrong_base_address_is_said_with_its_register(ports: int, caplog: pyte
         await windows.connect()
         line.start()
         await asyncio.sleep(1.2)
-        words = await windows.read(100, 76)
+        words = await windows.read(STATUS_START, STATUS_WORDS)
         await asyncio.to_thread(line.stop)
         await windows.close()
         return sum(words)

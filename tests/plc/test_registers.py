@@ -1,4 +1,5 @@
 import re
+from enum import IntFlag
 
 import pytest
 import tree_sitter_iec61131_3_st
@@ -12,10 +13,16 @@ from station.plc.block.dialects import scl, structured_text, symbols
 from station.plc.document import as_csv
 from station.plc.registers import (
     BY_NAME,
+    COMMAND_START,
     COMMAND_WORDS,
     MAP,
     STATUS_START,
     STATUS_WORDS,
+    Control,
+    Flags,
+    Status,
+    all_bits,
+    named_bits,
     pack,
     pack_window,
     reordered,
@@ -74,6 +81,30 @@ def test_the_files_for_plc_tools_are_those_of_the_definition(form: str, name: st
     assert main(["registers", "--format", form]) == 0
     path = ROOT / "deploy" / "plc" / name
     assert path.read_text() == capsys.readouterr().out, f"run: weldgate registers --format {form} > deploy/plc/{name}"
+
+
+def test_the_page_for_integrators_names_the_windows_and_registers_of_the_map() -> None:
+    page = (ROOT / "deploy" / "plc" / "README.md").read_text()
+    for said in (
+        f"({STATUS_WORDS} registers from {STATUS_START})",
+        f"({COMMAND_WORDS} registers from {COMMAND_START})",
+        f"outside registers {COMMAND_START} to {COMMAND_START + COMMAND_WORDS - 1} is refused",
+        f"the record ({STATUS_WORDS - 1} registers)",
+        f"Read four registers from {BY_NAME['TEST_U32'].address}",
+        f"ENABLE (register {BY_NAME['CONTROL'].address}, bit {Control.ENABLE.bit_length() - 1})",
+        f"PLC_HEARTBEAT (register {BY_NAME['PLC_HEARTBEAT'].address})",
+        f"OFFLINE_REASON ({BY_NAME['OFFLINE_REASON'].address})",
+    ):
+        assert said in page, f"deploy/plc/README.md must say: {said}"
+
+
+@pytest.mark.parametrize("flags", [Control, Status, Flags])
+@given(st.integers(0, 0xFFFF))
+def test_bits_with_a_name_pass_and_others_are_ignored(flags: type[IntFlag], register: int) -> None:
+    found = named_bits(flags, register)
+    assert [bit in found for bit in flags] == [bool(register & bit) for bit in flags]
+    assert found in all_bits(flags)
+    assert named_bits(flags, 0xFFFF) == all_bits(flags) <= 0xFFFF
 
 
 def test_the_table_has_a_row_for_each_register() -> None:

@@ -10,7 +10,7 @@ from pymodbus.client import AsyncModbusTcpClient
 from station.errors import LineError
 from station.plc.line import ModbusLine, make_line
 from station.plc.port import Result, Trigger
-from station.plc.registers import Flags, VerdictCode
+from station.plc.registers import COMMAND_WORDS, Flags, VerdictCode
 from station.settings import PlcSettings
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:pymodbus")
@@ -50,8 +50,8 @@ def test_the_status_window_is_closed_to_writers(line: ModbusLine) -> None:
             client.write_coil(1606, True),
             client.write_coils(1600, [True] * 16),
             client.write_coils(0, [True] * 1968),
-            client.write_coils(22 * 16, [True] * 32),
-            client.write_registers(20, [0] * 6),
+            client.write_coils((COMMAND_WORDS - 1) * 16, [True] * 32),
+            client.write_registers(COMMAND_WORDS - 3, [0] * 6),
             client.mask_write_register(address=105, and_mask=0, or_mask=1),
             client.readwrite_registers(read_address=100, read_count=2, write_address=105, values=[1]),
         ]

@@ -16,7 +16,19 @@ from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 from station.plc.buslog import Edge, tail_bus
-from station.plc.registers import BY_NAME, COMMAND_START, MAP, STATUS_START, Control, Offline, Status, Value, VerdictCode, unpack_window
+from station.plc.registers import (
+    BY_NAME,
+    COMMAND_START,
+    MAP,
+    STATUS_START,
+    Control,
+    Offline,
+    Status,
+    Value,
+    VerdictCode,
+    named_bits,
+    unpack_window,
+)
 from station.requests import Service
 from station.users import Level
 
@@ -106,7 +118,7 @@ class LinePage(Page):
         self._stale.setVisible(not there)
         self.registers.setEnabled(there)
         values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(STATUS_START, list(status.status_words))
-        held = {"CONTROL": Control(int(str(values["CONTROL"])) & 0xFF), "STATUS": status.status}
+        held = {"CONTROL": named_bits(Control, int(str(values["CONTROL"]))), "STATUS": status.status}
         c = theme.colors()
         for (register, flag), lamp in self._lamps.items():
             on = there and bool(flag & held[register])

@@ -24,6 +24,7 @@ from station.plc.registers import (
     Status,
     Value,
     VerdictCode,
+    named_bits,
     number,
     pack,
     unpack_window,
@@ -170,7 +171,7 @@ class SimulatedLine:
             number(values, "INSPECTION_ID"),
             number(values, "REASON"),
             seen is not None and v.Refusal not in (NOT_READY, NO_RESULT) and not v.Window[0] & Status.RESULT_VALID,
-            Flags(number(values, "FLAGS") & 7),
+            named_bits(Flags, number(values, "FLAGS")),
             v.TriggerId,
         )
 
