@@ -23,7 +23,19 @@ from station.events import PartEvent, Preview, StatusEvent
 from station.imagefile import read_image
 from station.panel.app import open_window
 from station.panel.window import PAGES, Window
-from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, TEST_F32, TEST_U32, VerdictCode, pack_window
+from station.plc.port import Counts, LineState
+from station.plc.registers import (
+    COMMAND_WORDS,
+    STATUS_START,
+    STATUS_WORDS,
+    TEST_F32,
+    TEST_U32,
+    Control,
+    Offline,
+    Status,
+    VerdictCode,
+    pack_window,
+)
 from station.preview import make_preview
 from station.recipe import prepare
 from station.records import Part, Record
@@ -100,8 +112,28 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     nok = inspection.nok
     words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1}))
     now_s = time.monotonic()
-    status = StatusEvent(now_s, now_s, 0.0, True, "", Origin.SIMULATED, (0,) * COMMAND_WORDS, words)
-    part = PartEvent(now_s, record, nok, False, None, VerdictCode.NOK, 5.0, 1.0)
+    line = LineState(control=Control(0), status=Status(0), offline=Offline.NONE, error_code=0, counts=Counts(ok=1))
+    status = StatusEvent(
+        at_s=now_s,
+        started_s=now_s,
+        reloaded_s=0.0,
+        camera_there=True,
+        camera_message="",
+        origin=Origin.SIMULATED,
+        line=line,
+        command_words=(0,) * COMMAND_WORDS,
+        status_words=words,
+    )
+    part = PartEvent(
+        at_s=now_s,
+        record=record,
+        seg_nok=nok,
+        novel=False,
+        drift=None,
+        told=VerdictCode.NOK,
+        record_ms=5.0,
+        publish_ms=1.0,
+    )
     return record, ([status] * STATUSES, part, make_preview(1, image, inspection.ring))
 
 

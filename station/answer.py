@@ -18,7 +18,7 @@ def verdict_code(record: Record, trusted: bool) -> VerdictCode:
     return VerdictCode.NOK
 
 
-def answer(trigger: Trigger, record: Record, nok: tuple[bool, ...], novel: bool, drifting: bool, trusted: bool) -> Result:
+def answer(trigger: Trigger, record: Record, *, nok: tuple[bool, ...], novel: bool, drifting: bool, trusted: bool) -> Result:
     """The result for a trigger; `nok`: refused segments, empty if none was judged."""
     inspection = record.inspection
     reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]

@@ -1,40 +1,30 @@
-"""The engine: one trigger, one part, one record, one answer. Owns no device's details.
-
-A verdict is published only after its record is durable; whatever goes wrong on the way ends in ERROR.
-"""
+"""The engine's loop: triggers and commands of the PLC, requests of people, self-checks while nothing else is to do."""
 
 import logging
 import threading
-import time
 from collections.abc import Callable
 from functools import partial
 
 from station.alarmlog import AlarmLog
-from station.answer import answer
 from station.archive.writer import Archive
 from station.camera.reconnecting import ReconnectingCamera
-from station.condition import Seen, alarms, health
-from station.defects import Reason
-from station.domain import Frame, Inspection, Origin, Purpose, Timing
+from station.condition import Seen, health
+from station.domain import Origin
 from station.errors import LineError, WeldgateError
-from station.events import PartEvent, StatusEvent
 from station.listener import Listener
-from station.plc.codes import ERROR_DEADLINE
-from station.plc.port import Command, Health, Line, Trigger
-from station.plc.registers import STATUS_START, Offline, Status, VerdictCode, word
-from station.preview import make_preview
+from station.plc.port import Command, Line, Trigger
+from station.plc.registers import Offline
+from station.procedure import Procedure
 from station.recipe import Loaded
-from station.recorder import keep, mark_shown, unkept
-from station.records import Part, Record
 from station.released import Released
 from station.requests import Reload, ResetCounts, Service
 from station.service import Attention, drained, look
+from station.status_report import StatusReport
 from station.watch import Watch
 
 log = logging.getLogger("weldgate.cycle")
 
 IDLE_S = 0.1
-STATUS_S = 0.25
 
 
 class Cycle:
@@ -42,6 +32,7 @@ class Cycle:
 
     def __init__(
         self,
+        *,
         camera: ReconnectingCamera,
         origin: Origin,
         line: Line,
@@ -54,16 +45,26 @@ class Cycle:
     ) -> None:
         """`released`: settings in use."""
         self._camera = camera
-        self._origin = origin
         self._line = line
         self._archive = archive
         self._loaded = loaded
         self._released = released
         self._watch = watch
-        self._listener, self._alarm_log = listener, alarm_log
+        self._listener = listener
         self._attention = Attention()
         self._settings_refused = False
-        self._status_s, self._started_s, self._reloaded_s = 0.0, time.monotonic(), 0.0
+        self._reloaded_s = 0.0
+        self._status = StatusReport(camera=camera, origin=origin, line=line, listener=listener, alarm_log=alarm_log)
+        self._procedure = Procedure(
+            camera=camera,
+            origin=origin,
+            line=line,
+            archive=archive,
+            watch=watch,
+            listener=listener,
+            alarm_log=alarm_log,
+            check_in=self._check_in,
+        )
 
     def run(self, stop: threading.Event) -> None:
         """Serve triggers until `stop`; closes the camera at the end."""
@@ -71,19 +72,24 @@ class Cycle:
             while not stop.is_set():
                 self._camera.look_after()
                 self._hear()
-                self._line.checked_in(self._health())
-                self._tell_status()
+                seen = self._seen()
+                self._line.checked_in(health(seen))
+                self._status.send(seen, self._reloaded_s)
                 request = self._line.next_request(IDLE_S)
                 if isinstance(request, Trigger):
-                    what = f"part of trigger {request.trigger_id} was not answered"
-                    if not self._guarded(partial(self._part, request), what) and self._line.in_work(request):
-                        self._guarded(partial(self._unanswered, request), what)
+                    self._serve(request)
                 elif isinstance(request, Command):
                     self._line.command_done(request, self._load_recipe(request))
                 elif not self._attend():
                     self._watch.idle()
         finally:
             self._camera.close()
+
+    def _serve(self, trigger: Trigger) -> None:
+        failed = f"part of trigger {trigger.trigger_id} was not answered"
+        answered = self._guarded(partial(self._procedure.part, trigger, self._loaded), failed)
+        if not answered and self._line.in_work(trigger):
+            self._guarded(partial(self._procedure.unanswered, trigger, self._loaded), failed)
 
     def _hear(self) -> None:
         requests = self._listener.requests()
@@ -95,13 +101,13 @@ class Cycle:
 
     def _attend(self) -> bool:
         """What people ask for, once no part is in work. Whether there was anything to do."""
-        status = Status(word(STATUS_START, self._line.windows()[1], "STATUS"))
+        status = self._line.state().status
         task, wanted = self._attention.due(status), self._attention.service.looking
         if isinstance(task, Reload):
             self._guarded(self._reload, "the settings were not read again")
             self._reloaded_s = task.asked_s
         elif task is not None:
-            self._guarded(partial(self._test_picture, task.master), "the test picture was not judged")
+            self._guarded(partial(self._procedure.test_image, task.master, self._loaded), "the test picture was not judged")
         elif wanted is not None and drained(status):
             self._guarded(partial(self._look, wanted), "no picture for setting up")
         return task is not None or wanted is not None
@@ -145,7 +151,7 @@ class Cycle:
     def _use(self, loaded: Loaded) -> None:
         self._loaded = loaded
         self._watch.use(loaded)
-        self._line.checked_in(self._health())
+        self._check_in()
         log.info("recipe %d in use, configuration %d", loaded.number, loaded.provenance.config_crc)
 
     def _seen(self) -> Seen:
@@ -154,7 +160,7 @@ class Cycle:
             camera_there=self._camera.there,
             can_write=self._archive.has_room(),
             room=self._archive.room(),
-            plc_silent=word(STATUS_START, self._line.windows()[1], "OFFLINE_REASON") == Offline.PLC_SILENT,
+            plc_silent=self._line.state().offline is Offline.PLC_SILENT,
             self_test_failed=watch.self_test_failed,
             master_wrong=watch.master_wrong,
             masters_due=watch.masters_due,
@@ -167,33 +173,8 @@ class Cycle:
             config_crc=self._loaded.provenance.config_crc,
         )
 
-    def _health(self) -> Health:
-        return health(self._seen())
-
-    def _tell_status(self) -> None:
-        now = time.monotonic()
-        if now - self._status_s < STATUS_S:
-            return
-        self._status_s = now
-        seen, (command, words) = self._seen(), self._line.windows()
-        lasting = alarms(seen)
-        self._alarm_log.lasting(lasting)
-        self._listener.event(
-            StatusEvent(
-                at_s=now,
-                started_s=self._started_s,
-                reloaded_s=self._reloaded_s,
-                camera_there=self._camera.there,
-                camera_message=self._camera.message,
-                origin=self._origin,
-                alarms=tuple(int(code) for code in lasting),
-                recipe=seen.recipe,
-                config_crc=seen.config_crc,
-                service=seen.service,
-                command_words=command,
-                status_words=words,
-            )
-        )
+    def _check_in(self) -> None:
+        self._line.checked_in(health(self._seen()))
 
     def _guarded(self, work: Callable[[], None], failed: str) -> bool:
         """A fault nobody foresaw costs one part, not the station: the handshake answers ERROR at its deadline. Whether all went well."""
@@ -205,95 +186,3 @@ class Cycle:
             log.exception(failed)
             return False
         return True
-
-    def _unanswered(self, trigger: Trigger) -> None:
-        """No old verdict stays on the screen."""
-        self._alarm_log.passing(ERROR_DEADLINE, f"trigger {trigger.trigger_id}, {trigger.serial}")
-        part = Part(trigger.serial, trigger.trigger_id, self._origin, Purpose.GOLDEN if trigger.golden else Purpose.PART)
-        record = unkept(Inspection.error(Reason.INTERNAL), part, self._loaded.provenance)
-        self._tell(None, PartEvent(time.monotonic(), record, (), False, None, VerdictCode.ERROR, 0.0, 0.0))
-
-    def _part(self, trigger: Trigger) -> None:
-        frame, inspection = self._take(trigger)
-        pending = self._archive.begin(frame)
-        if frame is not None:
-            inspection = self._judge(frame, inspection.timing)
-        start = time.perf_counter()
-        purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
-        origin = self._origin if frame is None else frame.origin
-        part = Part(trigger.serial, trigger.trigger_id, origin, purpose)
-        record = keep(self._archive, pending, inspection, part, self._loaded.provenance)
-        record_ms = (time.perf_counter() - start) * 1000
-        self._watch.part(record.inspection)
-        if trigger.golden:
-            self._watch.master(record.serial, record.verdict)
-        self._line.checked_in(self._health())
-        nok, novel = self._decided(record)
-        start = time.perf_counter()
-        result = answer(trigger, record, nok, novel, self._watch.drifting, self._watch.trusted)
-        shown = self._line.publish(result)
-        publish_ms = (time.perf_counter() - start) * 1000
-        if result.error_code or not shown:
-            told = word(STATUS_START, self._line.windows()[1], "ERROR_CODE")
-            code = result.error_code if shown else told or ERROR_DEADLINE
-            self._alarm_log.passing(code, f"part {record.inspection_id}")
-        if not shown:
-            log.warning(
-                "part %d, %s: came too late, the PLC was not shown its verdict %s", record.inspection_id, record.serial, record.verdict
-            )
-        mark_shown(self._archive, record, shown)
-        if novel:
-            log.warning(
-                "part %d, %s: unlike the training images (distance %.2f); check light, focus and surface",
-                record.inspection_id,
-                record.serial,
-                record.inspection.novelty,
-            )
-        said = result.verdict if shown else VerdictCode.ERROR
-        self._tell(frame, PartEvent(time.monotonic(), record, nok, novel, self._watch.drift, said, record_ms, publish_ms))
-
-    def _test_picture(self, master: str) -> None:
-        """A picture of what lies there now, judged and recorded; the PLC is told nothing, the counters stand still."""
-        frame, inspection = self._grab()
-        pending = self._archive.begin(frame)
-        if frame is not None:
-            inspection = self._judge(frame, inspection.timing)
-        purpose = Purpose.GOLDEN if master else Purpose.TEST
-        part = Part(master, 0, self._origin if frame is None else frame.origin, purpose)
-        record = keep(self._archive, pending, inspection, part, self._loaded.provenance)
-        if master:
-            self._watch.master(record.serial, record.verdict)
-        mark_shown(self._archive, record, False)
-        nok, novel = self._decided(record)
-        self._tell(frame, PartEvent(time.monotonic(), record, nok, novel, self._watch.drift, VerdictCode.NONE, 0.0, 0.0))
-
-    def _decided(self, record: Record) -> tuple[tuple[bool, ...], bool]:
-        """Which segments are refused, and whether the picture is unlike all training."""
-        inspector = self._loaded.inspector
-        return record.inspection.nok, inspector.is_novel(record.inspection)
-
-    def _tell(self, frame: Frame | None, event: PartEvent) -> None:
-        self._listener.event(event)
-        if frame is not None:
-            self._listener.preview(make_preview(event.record.inspection_id, frame.image, event.record.inspection.ring))
-
-    def _take(self, trigger: Trigger) -> tuple[Frame | None, Inspection]:
-        """The frame of this trigger's part; none if the trigger is over and another part may lie there."""
-        if not self._line.in_work(trigger):
-            return None, Inspection.error(Reason.ABORTED)
-        frame, inspection = self._grab()
-        self._line.exposure_done(trigger)
-        return frame, inspection
-
-    def _grab(self) -> tuple[Frame | None, Inspection]:
-        """A frame, or why there is none; never with an exposure that somebody tries by hand."""
-        self._camera.adjust(None, None)
-        frame, reason, grab_ms = self._camera.grab()
-        return frame, Inspection.error(reason or Reason.INTERNAL, timing=Timing(grab_ms=grab_ms))
-
-    def _judge(self, frame: Frame, timing: Timing) -> Inspection:
-        try:
-            return self._loaded.inspector.inspect(frame.image, timing.grab_ms)
-        except Exception:  # the gate must answer: any fault is "not judged"
-            log.exception("inspection failed")
-            return Inspection.error(Reason.INTERNAL, timing=timing)

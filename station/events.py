@@ -7,7 +7,8 @@ from pydantic import ConfigDict
 
 from station.classify.drift import Drift
 from station.domain import Origin, Ring
-from station.plc.registers import BY_NAME, STATUS_START, Offline, Status, VerdictCode, word
+from station.plc.port import LineState
+from station.plc.registers import VerdictCode
 from station.records import Record
 
 STATUS_LOST_S = 2.0
@@ -16,21 +17,7 @@ SETTING_UP = -1
 """Number of a picture that is not judged; a part whose record could not be written has 0."""
 
 
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """Parts by what the PLC was told, since the engine started or the counters were set back."""
-
-    ok: int = 0
-    nok: int = 0
-    error: int = 0
-
-    @property
-    def total(self) -> int:
-        """All parts, judged or not."""
-        return self.ok + self.nok + self.error
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class StatusEvent:
     """How the station stands; several a second."""
 
@@ -44,9 +31,11 @@ class StatusEvent:
     camera_message: str
     """Why the camera is not there, or empty."""
     origin: Origin
+    line: LineState
+    """What the PLC reads, decoded."""
     command_words: tuple[int, ...]
     status_words: tuple[int, ...]
-    """Both windows of the register map, as the PLC has them."""
+    """Raw words of both windows, for the table of registers on the page Line alone."""
     alarms: tuple[int, ...] = ()
     """Codes of what lasts now."""
     recipe: int = 1
@@ -55,24 +44,8 @@ class StatusEvent:
     """Who works on the station, or empty."""
     type: Literal["status"] = "status"
 
-    @property
-    def status(self) -> Status:
-        """Bits that the PLC reads."""
-        return Status(word(STATUS_START, self.status_words, "STATUS"))
 
-    @property
-    def counts(self) -> Counts:
-        """As the PLC reads them."""
-        first = (BY_NAME[name].address - STATUS_START for name in ("COUNT_OK", "COUNT_NOK", "COUNT_ERROR"))
-        return Counts(*(self.status_words[i] << 16 | self.status_words[i + 1] for i in first))
-
-    @property
-    def offline(self) -> Offline:
-        """Why READY is 0."""
-        return Offline(word(STATUS_START, self.status_words, "OFFLINE_REASON"))
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PartEvent:
     """One part judged, recorded and published."""
 
@@ -108,7 +81,7 @@ class Preview:
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(ser_json_bytes="base64", val_json_bytes="base64")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LookEvent:
     """One setting-up picture in numbers; not judged, not recorded."""
 

@@ -12,7 +12,7 @@ from station.records import Part, Provenance, Record
 log = logging.getLogger("weldgate.recorder")
 
 
-def keep(archive: Archive, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance) -> Record:
+def keep(archive: Archive, pending: Pending, inspection: Inspection, part: Part, *, provenance: Provenance) -> Record:
     """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
     try:
         return archive.commit(pending, inspection, part, provenance, datetime.now(UTC))
@@ -26,7 +26,19 @@ def keep(archive: Archive, pending: Pending, inspection: Inspection, part: Part,
 
 def unkept(failed: Inspection, part: Part, provenance: Provenance) -> Record:
     """In memory alone, with the number 0."""
-    return Record(0, part.serial, part.trigger_id, datetime.now(UTC), "", part.origin, None, None, failed, provenance, part.purpose)
+    return Record(
+        inspection_id=0,
+        serial=part.serial,
+        trigger_id=part.trigger_id,
+        grabbed_at=datetime.now(UTC),
+        source="",
+        origin=part.origin,
+        frame_file=None,
+        frame_sha256=None,
+        inspection=failed,
+        provenance=provenance,
+        purpose=part.purpose,
+    )
 
 
 def mark_shown(archive: Archive, record: Record, shown: bool) -> None:

@@ -99,22 +99,35 @@ def drained(status: Status) -> bool:
 def look(camera: ReconnectingCamera, inspector: Inspector, wanted: Service) -> tuple[LookEvent, Preview | None]:
     """One picture with its numbers."""
     camera.adjust(wanted.exposure_us, wanted.gain_db)
-    frame, reason, _ = camera.grab()
-    if frame is None:
-        return LookEvent(wanted.exposure_us, wanted.gain_db, 0.0, 0.0, 0.0, (), None, str(reason)), None
-    ring, problem = None, ""
+    grab = camera.grab()
+    if grab.frame is None:
+        event = LookEvent(
+            exposure_us=wanted.exposure_us,
+            gain_db=wanted.gain_db,
+            mean_dn=0.0,
+            saturated_share=0.0,
+            sharpness=0.0,
+            histogram=(),
+            ring=None,
+            problem=str(grab.reason),
+        )
+        return event, None
+    image, ring, problem = grab.frame.image, None, ""
     try:
-        ring = inspector.locate(frame.image)
+        ring = inspector.locate(image)
     except (LocateError, ModelError) as error:
         problem = str(error)
-    shown = frame.image if ring is None else unwrap(frame.image, ring)
+    shown = image if ring is None else unwrap(image, ring)
     quality = measure(shown)
     counts, _ = np.histogram(shown, CLASSES, (0, 256))
     event = LookEvent(
-        *(wanted.exposure_us, wanted.gain_db),
-        *(quality.mean_dn, quality.saturated_share, quality.sharpness),
-        tuple(int(c) for c in counts),
-        ring,
-        problem,
+        exposure_us=wanted.exposure_us,
+        gain_db=wanted.gain_db,
+        mean_dn=quality.mean_dn,
+        saturated_share=quality.saturated_share,
+        sharpness=quality.sharpness,
+        histogram=tuple(int(count) for count in counts),
+        ring=ring,
+        problem=problem,
     )
-    return event, make_preview(SETTING_UP, frame.image, ring)
+    return event, make_preview(SETTING_UP, image, ring)

@@ -2,6 +2,7 @@
 
 import logging
 import time
+from dataclasses import dataclass
 
 from station.camera.port import Camera
 from station.defects import Reason
@@ -12,6 +13,20 @@ log = logging.getLogger("weldgate.camera")
 
 ALIVE_S = 1.0
 """Between two questions whether it still answers."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grab:
+    """One attempt to take a frame: either the frame, or the reason why there is none."""
+
+    frame: Frame | None
+    reason: Reason | None
+    grab_ms: float | None
+    """Duration of the attempt; None if the camera was not asked."""
+
+    def __post_init__(self) -> None:
+        if (self.frame is None) == (self.reason is None):
+            raise ValueError("a grab has a frame or the reason why there is none")
 
 
 class ReconnectingCamera:
@@ -44,8 +59,8 @@ class ReconnectingCamera:
                 self.there, self.message, self._alive_s = True, "", now
             self._tried_s = time.monotonic()
 
-    def grab(self) -> tuple[Frame | None, Reason | None, float]:
-        """A frame, or why there is none; and the milliseconds it took."""
+    def grab(self) -> Grab:
+        """Take a frame; a camera that is lost or fails is a reason, not an exception."""
         start = time.perf_counter()
         frame, reason = None, None
         if not self.there:
@@ -66,7 +81,7 @@ class ReconnectingCamera:
                 log.exception("the camera ended with a fault")
                 self._lost("camera ended with a fault, see the log")
                 reason = Reason.INTERNAL
-        return frame, reason, (time.perf_counter() - start) * 1000
+        return Grab(frame, reason, (time.perf_counter() - start) * 1000)
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
         """For the next frames; None: as the settings say."""

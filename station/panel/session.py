@@ -130,7 +130,7 @@ class Session(QObject):
 
     def reset_counts(self) -> bool:
         """False if no engine is there. Raises LoginError, RecordError if it cannot be noted who asked."""
-        user, counts = self.who(Level.SETTER), None if self.status is None else self.status.counts
+        user, counts = self.who(Level.SETTER), None if self.status is None else self.status.line.counts
         before = "" if counts is None else f"OK {counts.ok}, NOK {counts.nok}, ERROR {counts.error}"
         append(self.folder, Kind.SERVICE, user.name, "counters", before, "0")
         return self.ask(ResetCounts(time.time(), user.name))
@@ -169,7 +169,7 @@ class Session(QObject):
                 return  # perhaps another window writes: again with the next status
             self._ask_to_reload(None)
             self.change_refused.emit()
-        elif time.time() >= change.again_s and event.offline is not Offline.ATTENDED:
+        elif time.time() >= change.again_s and event.line.offline is not Offline.ATTENDED:
             change.again_s = time.time() + AGAIN_S
             self.ask(Reload(time.time()))
 

@@ -11,8 +11,8 @@ from contextlib import suppress
 
 from station.errors import LineError
 from station.plc import status_window
-from station.plc.handshake import Inputs, Phase, State, Step, Times, step
-from station.plc.port import Command, Health, Result, Trigger
+from station.plc.handshake import ALL_CONTROL, Inputs, Phase, State, Step, Times, step
+from station.plc.port import Command, Counts, Health, LineState, Result, Trigger
 from station.plc.registers import (
     COMMAND_START,
     COMMAND_WORDS,
@@ -23,7 +23,6 @@ from station.plc.registers import (
     Offline,
     Value,
     VerdictCode,
-    all_bits,
     named_bits,
     number,
     pack_window,
@@ -74,7 +73,7 @@ class ModbusLine:
         self._state = State()
         self._health, self._health_s = Health(False, Offline.STARTING, False, 0), -1e9
         self._counts = {VerdictCode.OK: 0, VerdictCode.NOK: 0, VerdictCode.ERROR: 0}
-        self._command_words = [int(all_bits(Control))] + [0] * (COMMAND_WORDS - 1)
+        self._command_words = [int(ALL_CONTROL)] + [0] * (COMMAND_WORDS - 1)
         self._command = unpack_window(COMMAND_START, self._command_words)
         self._exposed: int | None = None
         self._offered: Offer | None = None
@@ -162,6 +161,10 @@ class ModbusLine:
     def reset_counts(self) -> None:
         """Parts are counted from 0."""
         self._counts = dict.fromkeys(self._counts, 0)
+
+    def state(self) -> LineState:
+        """What the line reads and publishes now, decoded."""
+        return status_window.decoded(self._command, self._values_before)
 
     def windows(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Words of the command window as last read and of the status window as last published."""
@@ -276,7 +279,7 @@ class ModbusLine:
 
     def _values(self, now_s: float) -> dict[str, Value]:
         now = self._counts  # set back from another thread
-        counts = (now[VerdictCode.OK], now[VerdictCode.NOK], now[VerdictCode.ERROR])
+        counts = Counts(now[VerdictCode.OK], now[VerdictCode.NOK], now[VerdictCode.ERROR])
         return status_window.values(self._state, self._health, now_s, counts)
 
     def _link_lost(self, error: LineError, now_s: float) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from station.plc.registers import CommandCode, Flags, Offline, VerdictCode
+from station.plc.registers import CommandCode, Control, Flags, Offline, Status, VerdictCode
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +70,34 @@ class Health:
     """Bit of STATUS that is set by hand; only while someone works on the station."""
 
 
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Parts by what the PLC read, since the engine started or the counters were reset."""
+
+    ok: int = 0
+    nok: int = 0
+    error: int = 0
+
+    @property
+    def total(self) -> int:
+        """Number of all parts, judged or not."""
+        return self.ok + self.nok + self.error
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineState:
+    """What PLC and station read of each other now, decoded from both windows."""
+
+    control: Control
+    """Bits that the PLC holds, as read last."""
+    status: Status
+    """Bits that the PLC reads, as published last."""
+    offline: Offline
+    """Why READY is 0."""
+    error_code: int
+    counts: Counts
+
+
 class Line(Protocol):
     """A line: gives triggers, takes results."""
 
@@ -102,6 +130,9 @@ class Line(Protocol):
 
     def checked_in(self, health: Health) -> None:
         """The inspection is alive; call at least every 500 ms while idle."""
+
+    def state(self) -> LineState:
+        """What the line reads and publishes now, decoded."""
 
     def windows(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Words of the command window as last read and of the status window as last published."""

@@ -4,7 +4,6 @@ Addresses are 0-based PDU addresses; 32-bit values have the high word first; bit
 """
 
 import struct
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum, IntFlag
 from functools import reduce
@@ -236,11 +235,6 @@ def unpack_window(start: int, words: list[int]) -> dict[str, Value]:
         for r in MAP
         if start <= r.address and r.address + r.words <= end
     }
-
-
-def word(start: int, words: Sequence[int], name: str) -> int:
-    """One 16-bit register out of a window."""
-    return words[BY_NAME[name].address - start]
 
 
 def reordered(start: int, words: list[int]) -> list[int]:

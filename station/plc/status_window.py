@@ -1,12 +1,12 @@
-"""What the PLC reads for a state of the handshake; pure."""
+"""What the PLC reads for a state of the handshake, and what both windows say in return; pure."""
 
 from station.domain import SEGMENTS
 from station.plc.handshake import ALL_SEGMENTS, Phase, State, ready
-from station.plc.port import Health
-from station.plc.registers import MAP_VERSION, TEST_F32, TEST_U32, Offline, Status, Value, VerdictCode
+from station.plc.port import Counts, Health, LineState
+from station.plc.registers import MAP_VERSION, TEST_F32, TEST_U32, Control, Offline, Status, Value, VerdictCode, named_bits, number
 
 
-def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int]) -> dict[str, Value]:
+def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, Value]:
     """Values of the whole status window."""
     shown = s.result if s.phase is Phase.SHOWN else None
     verdict = VerdictCode.NONE if shown is None else shown.verdict
@@ -49,9 +49,9 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         "MODE": 3 if in_service else 1 if s.phase is not Phase.OFFLINE else 2,
         "OFFLINE_REASON": int(s.offline),
         "CMD_ECHO": s.cmd_echo,
-        "COUNT_OK": counts[0],
-        "COUNT_NOK": counts[1],
-        "COUNT_ERROR": counts[2],
+        "COUNT_OK": counts.ok,
+        "COUNT_NOK": counts.nok,
+        "COUNT_ERROR": counts.error,
         "TEST_U32": TEST_U32,
         "TEST_F32": TEST_F32,
         "MAP_VERSION": MAP_VERSION,
@@ -73,3 +73,14 @@ def values(s: State, health: Health, now_s: float, counts: tuple[int, int, int])
         if shown.seg_scores:
             window |= {"SEG_SCORE": shown.seg_scores, "WORST_SEG": worst, "WORST_SCORE": shown.seg_scores[worst]}
     return window
+
+
+def decoded(command: dict[str, Value], status: dict[str, Value]) -> LineState:
+    """Return what the values of the command and of the status window say."""
+    return LineState(
+        control=named_bits(Control, number(command, "CONTROL")),
+        status=named_bits(Status, number(status, "STATUS")),
+        offline=Offline(number(status, "OFFLINE_REASON")),
+        error_code=number(status, "ERROR_CODE"),
+        counts=Counts(number(status, "COUNT_OK"), number(status, "COUNT_NOK"), number(status, "COUNT_ERROR")),
+    )

@@ -5,8 +5,21 @@ from dataclasses import replace
 
 from station.answer import verdict_code
 from station.domain import Inspection, Origin, Purpose
-from station.events import Counts, PartEvent, StatusEvent
-from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Offline, Status, Value, VerdictCode, pack_window
+from station.events import PartEvent, StatusEvent
+from station.plc.port import Counts
+from station.plc.registers import (
+    COMMAND_START,
+    COMMAND_WORDS,
+    STATUS_START,
+    STATUS_WORDS,
+    Offline,
+    Status,
+    Value,
+    VerdictCode,
+    pack_window,
+    unpack_window,
+)
+from station.plc.status_window import decoded
 from tests.parts import record
 
 
@@ -26,9 +39,20 @@ def status(
     values: dict[str, Value] = {"STATUS": int(bits), "OFFLINE_REASON": int(offline), "TEST_U32": 0x12345678, "TEST_F32": 123.456}
     c = counts or Counts(3, 1, 0)
     values |= {"COUNT_OK": c.ok, "COUNT_NOK": c.nok, "COUNT_ERROR": c.error}
-    words = tuple(pack_window(STATUS_START, STATUS_WORDS, values))
-    at_s = time.monotonic() if at_s is None else at_s
-    return StatusEvent(at_s, started_s, reloaded_s, not camera, camera, origin, (0,) * COMMAND_WORDS, words, alarms, service=service)
+    command_words, status_words = [0] * COMMAND_WORDS, pack_window(STATUS_START, STATUS_WORDS, values)
+    return StatusEvent(
+        at_s=time.monotonic() if at_s is None else at_s,
+        started_s=started_s,
+        reloaded_s=reloaded_s,
+        camera_there=not camera,
+        camera_message=camera,
+        origin=origin,
+        line=decoded(unpack_window(COMMAND_START, command_words), unpack_window(STATUS_START, status_words)),
+        command_words=tuple(command_words),
+        status_words=tuple(status_words),
+        alarms=alarms,
+        service=service,
+    )
 
 
 def part(
@@ -43,4 +67,13 @@ def part(
     made = replace(record(inspection, number, origin), purpose=purpose)
     nok = tuple(s.nok > 0.5 for s in inspection.scores)
     told = VerdictCode.NONE if purpose is Purpose.TEST else verdict_code(made, trusted)
-    return PartEvent(time.monotonic() if at_s is None else at_s, made, nok, False, None, told, 1.0, 1.0)
+    return PartEvent(
+        at_s=time.monotonic() if at_s is None else at_s,
+        record=made,
+        seg_nok=nok,
+        novel=False,
+        drift=None,
+        told=told,
+        record_ms=1.0,
+        publish_ms=1.0,
+    )

@@ -10,7 +10,6 @@ from pytestqt.qtbot import QtBot
 from station.channel import Inbox, Publisher, Subscriber
 from station.domain import Image, Ring
 from station.errors import LineError
-from station.events import Counts
 from station.panel import theme
 from station.panel.history.page import HistoryPage
 from station.panel.keys import Keys
@@ -18,6 +17,7 @@ from station.panel.live.page import LivePage
 from station.panel.setup.page import SetupPage
 from station.panel.window import HEADER_PX, NAV_PX, PAGES, Window
 from station.plc.alarms import Alarm
+from station.plc.port import Counts
 from station.plc.registers import Offline
 from station.preview import make_preview
 from station.requests import TestPicture

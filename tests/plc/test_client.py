@@ -14,7 +14,7 @@ from deploy.judge import WELL, Judge
 from station.plc.line import make_line
 from station.plc.modbus import ModbusServer
 from station.plc.port import Result, Trigger
-from station.plc.registers import STATUS_START, STATUS_WORDS, Flags, Offline, VerdictCode, word
+from station.plc.registers import STATUS_START, STATUS_WORDS, Flags, Offline, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
 from station.plc.wire import SHOWS, ClientWire
@@ -127,12 +127,12 @@ def test_a_mute_plc_is_told_and_nothing_blocks(ports: int, caplog: pytest.LogCap
         line.start()
         try:
             until = time.monotonic() + 10
-            while word(STATUS_START, line.windows()[1], "OFFLINE_REASON") != Offline.PLC_SILENT and time.monotonic() < until:
+            while line.state().offline is not Offline.PLC_SILENT and time.monotonic() < until:
                 start = time.monotonic()
                 line.checked_in(WELL)
                 assert line.next_request(0.01) is None
                 assert time.monotonic() - start < 0.1
-            assert word(STATUS_START, line.windows()[1], "OFFLINE_REASON") == Offline.PLC_SILENT
+            assert line.state().offline is Offline.PLC_SILENT
         finally:
             line.stop()
     assert "No response" in caplog.text
@@ -173,7 +173,7 @@ def test_a_wrong_base_address_is_said_with_its_register(ports: int, caplog: pyte
 
     assert asyncio.run(conversation()) == 0
     assert "4000 refused" in caplog.text
-    assert word(STATUS_START, line.windows()[1], "OFFLINE_REASON") == Offline.PLC_SILENT
+    assert line.state().offline is Offline.PLC_SILENT
 
 
 def test_windows_that_overlap_are_refused() -> None:

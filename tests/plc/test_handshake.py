@@ -7,7 +7,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from station.plc import status_window
 from station.plc.handshake import Inputs, State, Step, Times, ready, step
-from station.plc.port import Command, Health, Result, Trigger
+from station.plc.port import Command, Counts, Health, Result, Trigger
 from station.plc.registers import REFUSED, CommandCode, Control, Flags, Offline, Status, VerdictCode, number
 
 WELL = Health(True, Offline.NONE, False, 7)
@@ -66,10 +66,10 @@ class Driver:
         return outcome
 
     def values(self) -> dict[str, object]:
-        return dict(status_window.values(self.state, self.health, self.now, (0, 0, 0)))
+        return dict(status_window.values(self.state, self.health, self.now, Counts()))
 
     def bits(self) -> Status:
-        return Status(number(status_window.values(self.state, self.health, self.now, (0, 0, 0)), "STATUS"))
+        return Status(number(status_window.values(self.state, self.health, self.now, Counts()), "STATUS"))
 
     def trigger(self, trigger_id: int) -> None:
         self.control = ON
@@ -117,7 +117,7 @@ def test_the_old_result_is_gone_before_trigger_ack(plc: Driver) -> None:
     wiped = step(plc.state, Inputs(plc.control, 500, 2, "S", 0, WELL, 0.0), plc.now, TIMES)
     assert wiped.again
     assert wiped.start is None
-    shown = status_window.values(wiped.state, WELL, plc.now, (0, 0, 0))
+    shown = status_window.values(wiped.state, WELL, plc.now, Counts())
     assert shown["VERDICT"] == 0
     assert Status.TRIGGER_ACK not in Status(number(shown, "STATUS"))
 

@@ -41,6 +41,7 @@ change(
 )
 
 import pytest  # noqa: E402
+from pydantic import TypeAdapter  # noqa: E402
 
 from deploy.demo import free_ports  # noqa: E402
 from station.plc.block.dialects import structured_text  # noqa: E402
@@ -49,6 +50,7 @@ from station.plc.document import as_markdown  # noqa: E402
 from station.plc.handshake import State  # noqa: E402
 from station.plc.line import make_line  # noqa: E402
 from station.plc.modbus import ModbusClient  # noqa: E402
+from station.plc.port import LineState  # noqa: E402
 from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Control, Flags, Value  # noqa: E402
 from station.plc.simulated.line import SimulatedLine  # noqa: E402
 from station.settings import PlcSettings  # noqa: E402
@@ -82,7 +84,9 @@ def line() -> None:
     station.start()
     try:
         asyncio.run(write())
-        assert station._inputs(0.0, True, None).control == NINTH
+        assert station._inputs(0.0, True, None).control == station.state().control == NINTH
+        adapter = TypeAdapter(LineState)
+        assert adapter.validate_json(adapter.dump_json(station.state())).control == NINTH, "the window reads it too"
     finally:
         station.stop()
     assert looks[-1]["MORE"] == 4711

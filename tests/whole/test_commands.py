@@ -141,7 +141,7 @@ def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> No
         assert heard is not None
         assert not heard.camera_there
         assert "0815-0000" in heard.camera_message
-        assert heard.offline in (Offline.CAMERA_LOST, Offline.NOT_ENABLED, Offline.PLC_SILENT)
+        assert heard.line.offline in (Offline.CAMERA_LOST, Offline.NOT_ENABLED, Offline.PLC_SILENT)
     finally:
         subscriber.close()
         engine.terminate()

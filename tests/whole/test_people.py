@@ -313,18 +313,18 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
 
     good, bad = frames[label_with("OK")["frame"]], frames[label_with("hole")["frame"]]
     assert running.part("GOOD", good).verdict is VerdictCode.OK
-    status = running.until(lambda e: e.counts.ok == 1)
+    status = running.until(lambda e: e.line.counts.ok == 1)
     assert status.started_s < heard("GOOD").at_s <= time.monotonic()
     assert heard("GOOD").told is VerdictCode.OK
     assert running.part("MASTER-OK", bad, golden=True).verdict is VerdictCode.TEST
     assert running.part("NOT TRUSTED", good).verdict is VerdictCode.TEST
     assert (heard("NOT TRUSTED").told, heard("NOT TRUSTED").record.verdict) == (VerdictCode.TEST, Verdict.OK)
     running.ask(ResetCounts(time.time(), "Ada"))
-    running.until(lambda e: e.counts.total == 0)
+    running.until(lambda e: e.line.counts.total == 0)
 
     def broken(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("station.cycle.answer", broken)
+    monkeypatch.setattr("station.procedure.answer", broken)
     assert not running.part("FAULT", good).accepted
     assert (heard("FAULT").told, heard("FAULT").record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)

@@ -22,7 +22,8 @@ from models.evaluate import Evaluation, PartResult, evaluate_lot
 from station.__main__ import main
 from station.archive.writer import Archive
 from station.classify.onnx import Classifier, RingNetwork
-from station.domain import Frame, Image, Inspection, Origin, Reason
+from station.defects import Reason
+from station.domain import Frame, Image, Inspection, Origin
 from station.inspection import Inspector
 from station.records import Part
 from station.report.template import UNSEEN, render

@@ -26,7 +26,6 @@ from station.plc.registers import (
     Status,
     Value,
     VerdictCode,
-    named_bits,
     unpack_window,
 )
 from station.requests import Service
@@ -118,7 +117,7 @@ class LinePage(Page):
         self._stale.setVisible(not there)
         self.registers.setEnabled(there)
         values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(STATUS_START, list(status.status_words))
-        held = {"CONTROL": named_bits(Control, int(str(values["CONTROL"]))), "STATUS": status.status}
+        held = {"CONTROL": status.line.control, "STATUS": status.line.status}
         c = theme.colors()
         for (register, flag), lamp in self._lamps.items():
             on = there and bool(flag & held[register])
@@ -130,12 +129,12 @@ class LinePage(Page):
         self.registers.fill([(str(r.address), r.name, _shown(r.name, values[r.name])) for r in MAP])
         words = status.status_words
         for_u32, for_f32 = (words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32"))
-        number = struct.unpack(">f", struct.pack(">HH", *for_f32))[0]
+        test_f32 = struct.unpack(">f", struct.pack(">HH", *for_f32))[0]
         if self._session.settings.plc.low_word_first:
             for_u32, for_f32 = for_u32[::-1], for_f32[::-1]
         self._words.setText(
             translate("line", "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:")
-            + f" {for_u32[0]:04X} {for_u32[1]:04X} · {for_f32[0]:04X} {for_f32[1]:04X} ({number:.3f}). "
+            + f" {for_u32[0]:04X} {for_u32[1]:04X} · {for_f32[0]:04X} {for_f32[1]:04X} ({test_f32:.3f}). "
             + translate("line", "If the PLC reads 16#56781234, exchange its words or set plc.low_word_first.")
         )
 

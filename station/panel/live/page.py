@@ -123,7 +123,7 @@ class LivePage(Page):
         status = self._session.status
         if status is None:
             return
-        c = status.counts
+        c = status.line.counts
         share = f"{c.ok / c.total:.1%}" if c.total else "–"
         self.facts.set(parts=c.total, ok=c.ok, nok=c.nok, error=c.error, recipe=status.recipe, **{"yield": share})
         self.age()
