@@ -12,12 +12,12 @@ from rich.console import Console
 from rich.table import Table
 
 from deploy.demo import free_ports
-from deploy.judge import Judge
+from deploy.judge import Judge, judged
 from station.errors import WeldgateError
 from station.plc.line import make_line
 from station.plc.modbus import ModbusClient
 from station.plc.port import Result, Trigger
-from station.plc.registers import STATUS_START, STATUS_WORDS, Control, Flags, Status, VerdictCode
+from station.plc.registers import STATUS_START, STATUS_WORDS, Control, Status, VerdictCode
 from station.settings import PlcSettings
 
 READERS, READS_PER_S = 4, 50
@@ -26,7 +26,7 @@ BLOCK = 50
 
 
 def _ok(trigger: Trigger) -> Result:
-    return Result(trigger, VerdictCode.OK, trigger.number, 0, 0, (5,) * 21, 0, 0, Flags(0))
+    return judged(trigger, VerdictCode.OK)
 
 
 async def _until(client: ModbusClient, bit: Status, wanted: bool) -> None:

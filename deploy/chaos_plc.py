@@ -12,18 +12,19 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
 from deploy.demo import free_ports
-from deploy.judge import Judge
+from deploy.judge import Judge, judged
+from station.domain import SEGMENTS
 from station.errors import WeldgateError
 from station.plc.line import make_line
 from station.plc.port import Result, Trigger
-from station.plc.registers import Flags, VerdictCode
+from station.plc.registers import VerdictCode
 from station.plc.simulated.line import Answer, Knob, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
 from station.settings import PlcSettings
@@ -84,7 +85,8 @@ class Truths:
         self.made[number] = (trigger.serial, verdict)
         reason = 0 if verdict is VerdictCode.OK else 1
         error = 0x1001 if verdict is VerdictCode.ERROR else 0
-        return Result(trigger, verdict, number, reason, error, (100,) * 21, 0, 0, Flags(0))
+        result = judged(trigger, verdict, number)
+        return replace(result, reason=reason, error_code=error, seg_scores=(100,) * SEGMENTS)
 
 
 def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:

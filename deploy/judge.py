@@ -3,10 +3,26 @@
 import threading
 from collections.abc import Callable
 
+from station.domain import SEGMENTS
 from station.plc.port import Health, Line, Result, Trigger
-from station.plc.registers import Offline
+from station.plc.registers import Flags, Offline, VerdictCode
 
-WELL = Health(True, Offline.NONE, False, 4711)
+WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=4711)
+
+
+def judged(trigger: Trigger, verdict: VerdictCode, inspection_id: int | None = None) -> Result:
+    """Make up a result with low scores; its inspection number is that of the trigger if none is given."""
+    return Result(
+        trigger=trigger,
+        verdict=verdict,
+        inspection_id=trigger.number if inspection_id is None else inspection_id,
+        reason=0,
+        error_code=0,
+        seg_scores=(5,) * SEGMENTS,
+        seg_nok_mask=0,
+        seg_invalid_mask=0,
+        flags=Flags(0),
+    )
 
 
 class Judge:

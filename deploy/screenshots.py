@@ -124,9 +124,17 @@ def _people(window: Window) -> User:
 
 def _reviews(window: Window) -> None:
     folder, nok = window.session.folder, [part.record for part in window.session.parts if part.record.verdict == "NOK"]
-    for record in nok[-2:]:
-        give(folder, "Quentin Quality", True, record.inspection_id, "NOK", Opinion.RIGHT, "seen under the microscope")
-        give(folder, "Ada Admin", True, record.inspection_id, "NOK", Opinion.RIGHT)
+    for number in [record.inspection_id for record in nok[-2:]]:
+        give(
+            folder,
+            "Quentin Quality",
+            may_second=True,
+            inspection_id=number,
+            verdict="NOK",
+            opinion=Opinion.RIGHT,
+            comment="seen under the microscope",
+        )
+        give(folder, "Ada Admin", may_second=True, inspection_id=number, verdict="NOK", opinion=Opinion.RIGHT)
 
 
 def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:

@@ -112,7 +112,13 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     nok = inspection.nok
     words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1}))
     now_s = time.monotonic()
-    line = LineState(control=Control(0), status=Status(0), offline=Offline.NONE, error_code=0, counts=Counts(ok=1))
+    line = LineState(
+        control=Control(0),
+        status=Status(0),
+        offline=Offline.NONE,
+        error_code=0,
+        counts=Counts(ok=1),
+    )
     status = StatusEvent(
         at_s=now_s,
         started_s=now_s,

@@ -158,8 +158,17 @@ def _line(arguments: argparse.Namespace) -> int:
 
     from station.plc.simulated.run import LineRun, run_line
 
-    a = arguments
-    asyncio.run(run_line(LineRun(a.mode, a.host, a.port, a.parts, a.pace, a.accept_simulated, tuple(a.knob), a.seed)))
+    run = LineRun(
+        mode=arguments.mode,
+        host=arguments.host,
+        port=arguments.port,
+        parts=arguments.parts,
+        pace_s=arguments.pace,
+        accept_simulated=arguments.accept_simulated,
+        knobs=tuple(arguments.knob),
+        seed=arguments.seed,
+    )
+    asyncio.run(run_line(run))
     return 0
 
 

@@ -1,9 +1,8 @@
 """What the PLC is told of a record; pure."""
 
 from station.domain import Origin, Purpose, Verdict
-from station.plc.handshake import ALL_SEGMENTS
 from station.plc.port import Result, Trigger
-from station.plc.registers import ERROR_NOT_JUDGED, REASON_CODES, Flags, VerdictCode
+from station.plc.registers import ALL_SEGMENTS, ERROR_NOT_JUDGED, REASON_CODES, Flags, VerdictCode
 from station.records import Record
 
 
@@ -18,7 +17,15 @@ def verdict_code(record: Record, trusted: bool) -> VerdictCode:
     return VerdictCode.NOK
 
 
-def answer(trigger: Trigger, record: Record, *, nok: tuple[bool, ...], novel: bool, drifting: bool, trusted: bool) -> Result:
+def answer(
+    trigger: Trigger,
+    record: Record,
+    *,
+    nok: tuple[bool, ...],
+    novel: bool,
+    drifting: bool,
+    trusted: bool,
+) -> Result:
     """The result for a trigger; `nok`: refused segments, empty if none was judged."""
     inspection = record.inspection
     reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]

@@ -8,7 +8,7 @@ from station.plc.port import Health
 from station.plc.registers import Offline
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Seen:
     """What was found just now."""
 

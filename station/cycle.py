@@ -1,4 +1,4 @@
-"""The engine's loop: triggers and commands of the PLC, requests of people, self-checks while nothing else is to do."""
+"""The engine's loop: triggers and commands of the PLC, requests of people, self-checks while idle."""
 
 import logging
 import threading
@@ -54,7 +54,13 @@ class Cycle:
         self._attention = Attention()
         self._settings_refused = False
         self._reloaded_s = 0.0
-        self._status = StatusReport(camera=camera, origin=origin, line=line, listener=listener, alarm_log=alarm_log)
+        self._status = StatusReport(
+            camera=camera,
+            origin=origin,
+            line=line,
+            listener=listener,
+            alarm_log=alarm_log,
+        )
         self._procedure = Procedure(
             camera=camera,
             origin=origin,
@@ -107,7 +113,8 @@ class Cycle:
             self._guarded(self._reload, "the settings were not read again")
             self._reloaded_s = task.asked_s
         elif task is not None:
-            self._guarded(partial(self._procedure.test_image, task.master, self._loaded), "the test picture was not judged")
+            inspect = partial(self._procedure.test_image, task.master, self._loaded)
+            self._guarded(inspect, "the test picture was not judged")
         elif wanted is not None and drained(status):
             self._guarded(partial(self._look, wanted), "no picture for setting up")
         return task is not None or wanted is not None

@@ -58,7 +58,7 @@ class Procedure:
         alarm_log: AlarmLog,
         check_in: Callable[[], None],
     ) -> None:
-        """`origin`: where the camera's frames come from; `check_in` reports the station's health to the line."""
+        """`origin`: where frames come from; `check_in` reports the station's health to the line."""
         self._camera, self._origin = camera, origin
         self._line, self._check_in = line, check_in
         self._archive, self._watch = archive, watch
@@ -69,7 +69,7 @@ class Procedure:
         self._inspect(self._grab_for(trigger), self._triggered(trigger), loaded, trigger)
 
     def test_image(self, master: str, loaded: Loaded) -> None:
-        """Inspect what lies in the nest now, a `master` if named; the PLC reads nothing of it and nothing is counted."""
+        """Inspect what lies in the nest now, a `master` if named; the PLC reads nothing and nothing is counted."""
         purpose = Purpose.GOLDEN if master else Purpose.TEST
         self._inspect(self._grab(), Part(master, 0, self._origin, purpose), loaded, None)
 
@@ -133,7 +133,7 @@ class Procedure:
         return self._camera.grab()
 
     def _watched(self, record: Record, trigger: Trigger | None) -> None:
-        """Let the station watch itself by this record; drift is that of the line's parts, not of test images."""
+        """Let the station watch itself by this record; test images do not count for the drift."""
         if trigger is not None:
             self._watch.part(record.inspection)
         if record.purpose is Purpose.GOLDEN:
@@ -143,7 +143,8 @@ class Procedure:
         """Publish the result of a trigger; alarms and the log say what was wrong with it."""
         self._check_in()
         start = time.perf_counter()
-        result = answer(trigger, record, nok=nok, novel=novel, drifting=self._watch.drifting, trusted=self._watch.trusted)
+        drifting, trusted = self._watch.drifting, self._watch.trusted
+        result = answer(trigger, record, nok=nok, novel=novel, drifting=drifting, trusted=trusted)
         shown = self._line.publish(result)
         publish_ms = _ms_since(start)
         if result.error_code or not shown:

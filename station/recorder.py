@@ -12,7 +12,14 @@ from station.records import Part, Provenance, Record
 log = logging.getLogger("weldgate.recorder")
 
 
-def keep(archive: Archive, pending: Pending, inspection: Inspection, part: Part, *, provenance: Provenance) -> Record:
+def keep(
+    archive: Archive,
+    pending: Pending,
+    inspection: Inspection,
+    part: Part,
+    *,
+    provenance: Provenance,
+) -> Record:
     """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
     try:
         return archive.commit(pending, inspection, part, provenance, datetime.now(UTC))

@@ -50,7 +50,7 @@ class Part:
     purpose: Purpose = Purpose.PART
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
     """One judged part as kept on disk."""
 

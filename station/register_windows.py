@@ -1,6 +1,7 @@
 """The two windows of the register map: where they begin and how many registers they hold.
 
-Settings check the addresses in the PLC by these numbers, the register map fills them; a test fails if the map does not.
+Settings check the addresses in the PLC by these numbers, and the register map fills the windows: a test fails
+if it does not.
 """
 
 COMMAND_START = 0

@@ -17,7 +17,15 @@ STATUS_S = 0.25
 class StatusReport:
     """Sends what was found of the station; how often it is asked does not matter."""
 
-    def __init__(self, *, camera: ReconnectingCamera, origin: Origin, line: Line, listener: Listener, alarm_log: AlarmLog) -> None:
+    def __init__(
+        self,
+        *,
+        camera: ReconnectingCamera,
+        origin: Origin,
+        line: Line,
+        listener: Listener,
+        alarm_log: AlarmLog,
+    ) -> None:
         """`origin`: where the camera's frames come from."""
         self._camera, self._origin, self._line = camera, origin, line
         self._listener, self._alarm_log = listener, alarm_log

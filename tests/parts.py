@@ -69,4 +69,15 @@ def provenance() -> Provenance:
 
 def record(inspection: Inspection, number: int = 1, origin: Origin = Origin.SIMULATED) -> Record:
     """A record that was never on disk."""
-    return Record(number, f"S{number}", number, datetime.now(UTC), "cam", origin, None, None, inspection, provenance())
+    return Record(
+        inspection_id=number,
+        serial=f"S{number}",
+        trigger_id=number,
+        grabbed_at=datetime.now(UTC),
+        source="cam",
+        origin=origin,
+        frame_file=None,
+        frame_sha256=None,
+        inspection=inspection,
+        provenance=provenance(),
+    )

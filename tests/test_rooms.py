@@ -1,5 +1,6 @@
 """House rules as tests."""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +19,27 @@ def test_files_are_small_and_say_what_they_are(path: Path) -> None:
     assert len(text.splitlines()) <= 300
     assert text.startswith('"""')
     assert path.stem not in ("utils", "helpers", "manager", "base", "common")
+
+
+NAMED = [path for path in SOURCES if path.is_relative_to(ROOT / "station" / "plc")]
+NAMED += [
+    ROOT / "station" / f"{name}.py"
+    for name in ("__main__", "answer", "condition", "cycle", "procedure", "recorder", "service", "status_report")
+]
+CALLED_BY_LIBRARIES = ("_gate",)
+
+
+@pytest.mark.parametrize("path", NAMED, ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_call_with_more_than_four_arguments_names_them(path: Path) -> None:
+    for node in ast.walk(ast.parse(path.read_text())):
+        found: list[str] = []
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.name not in CALLED_BY_LIBRARIES:
+            found = [a.arg for a in node.args.posonlyargs + node.args.args if a.arg not in ("self", "cls")]
+        elif isinstance(node, ast.ClassDef) and any("frozen" in ast.unparse(d) for d in node.decorator_list):
+            fields = [ast.unparse(field) for field in node.body if isinstance(field, ast.AnnAssign)]
+            by_name = any("kw_only=True" in ast.unparse(d) for d in node.decorator_list)
+            found = [] if by_name else [field for field in fields if "kw_only=True" not in field]
+        assert len(found) <= 4, f"{path.name}:{getattr(node, 'lineno', 0)}: by position {found}"
 
 
 def test_importing_touches_no_device_thread_or_variant() -> None:

@@ -72,6 +72,7 @@ def possible(verdict: str) -> tuple[Opinion, ...]:
 def give(
     folder: Path,
     who: str,
+    *,
     may_second: bool,
     inspection_id: int,
     verdict: str,

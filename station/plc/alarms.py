@@ -4,7 +4,13 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from station.defects import Reason
-from station.plc.codes import ERROR_ABORTED, ERROR_BAD_TRIGGER_ID, ERROR_DEADLINE, ERROR_LINK_LOST, ERROR_STUCK_BIT
+from station.plc.codes import (
+    ERROR_ABORTED,
+    ERROR_BAD_TRIGGER_ID,
+    ERROR_DEADLINE,
+    ERROR_LINK_LOST,
+    ERROR_STUCK_BIT,
+)
 from station.plc.registers import ERROR_NOT_JUDGED, REASON_CODES
 
 

@@ -6,7 +6,7 @@ import os
 import queue
 import threading
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -36,7 +36,7 @@ class Edge:
     """PLC or station."""
     name: str
     value: int | str
-    note: str = ""
+    note: str = field(default="", kw_only=True)
     """Who cleared it, or which rule was broken."""
 
 
@@ -47,16 +47,19 @@ def edges(time_s: float, command: tuple[Values, Values], status: tuple[Values, V
     said, says = (named_bits(Status, number(values, "STATUS")) for values in status)
     for bit in Control:
         if (held ^ sent) & bit:
-            yield Edge(when, "PLC", str(bit.name), int(bool(sent & bit)), _plc_note(bit, bool(sent & bit), said))
+            on = bool(sent & bit)
+            yield Edge(when, "PLC", str(bit.name), int(on), note=_plc_note(bit, on, said))
     yield from _words(when, "PLC", WORDS["command"], command)
     for flag in Status:
         if (said ^ says) & flag:
             on = bool(says & flag)
-            yield Edge(when, "station", str(flag.name), int(on), _station_note(flag, on, sent & ~held, status[1]))
+            note = _station_note(flag, on, sent & ~held, status[1])
+            yield Edge(when, "station", str(flag.name), int(on), note=note)
     yield from _words(when, "station", WORDS["status"], status)
     if status[0]["OFFLINE_REASON"] != status[1]["OFFLINE_REASON"]:
         reason = Offline(number(status[1], "OFFLINE_REASON"))
-        yield Edge(when, "station", "OFFLINE_REASON", reason.name, "PLC_HEARTBEAT stands still" if reason is Offline.PLC_SILENT else "")
+        note = "PLC_HEARTBEAT stands still" if reason is Offline.PLC_SILENT else ""
+        yield Edge(when, "station", "OFFLINE_REASON", reason.name, note=note)
 
 
 def _words(when: str, by: str, names: tuple[str, ...], windows: tuple[Values, Values]) -> Iterator[Edge]:
@@ -144,7 +147,8 @@ class BusLog:
         day = waiting[-1].time[:10]
         with (self._folder / f"bus-{day}.jsonl").open("a") as file:
             if self._left_out:
-                waiting.append(Edge(waiting[-1].time, "station", "EDGES_LEFT_OUT", self._left_out, "the disk was too slow"))
+                left_out, why = self._left_out, "the disk was too slow"
+                waiting.append(Edge(waiting[-1].time, "station", "EDGES_LEFT_OUT", left_out, note=why))
                 self._left_out = 0
             file.writelines(json.dumps(asdict(edge)) + "\n" for edge in waiting)
         if day != self._day:

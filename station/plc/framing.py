@@ -4,6 +4,10 @@ HEADER = 6
 """Transaction, protocol and length, two bytes each; unit, function and data follow."""
 MAX_LENGTH = 254
 """Of what follows the length field: unit, function, 252 bytes of data."""
+FUNCTIONS = frozenset((1, 2, 3, 4, 5, 6, 15, 16, 22, 23, 43))
+"""Function codes that are served."""
+CLIENT_WRITES = frozenset((5, 6, 15, 16, 22, 23))
+"""Function codes by which a peer writes."""
 
 
 def frames(data: bytes) -> tuple[list[bytes], int, str | None]:

@@ -11,114 +11,22 @@ A command that the station must carry out holds READY at 0 until it is done. A v
 of any other trigger is refused.
 """
 
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import replace
 
 from station.defects import Reason
-from station.domain import SEGMENTS
-from station.plc.codes import ERROR_ABORTED, ERROR_BAD_TRIGGER_ID, ERROR_DEADLINE, ERROR_LINK_LOST, ERROR_STUCK_BIT
-from station.plc.port import Command, Health, Result, Trigger
-from station.plc.registers import REASON_CODES, REFUSED, CommandCode, Control, Flags, Offline, VerdictCode, all_bits
-
-ALL_CONTROL = all_bits(Control)
-ALL_SEGMENTS = (1 << SEGMENTS) - 1
-
-
-class Phase(StrEnum):
-    """Where the handshake stands."""
-
-    OFFLINE = "offline"
-    IDLE = "idle"
-    WIPED = "wiped"
-    BUSY = "busy"
-    SHOWN = "shown"
-
-
-@dataclass(frozen=True, slots=True)
-class Times:
-    """Time-outs in seconds."""
-
-    deadline_s: float = 2.0
-    result_ttl_s: float = 10.0
-    stuck_s: float = 5.0
-    plc_heartbeat_s: float = 2.0
-    """0: not watched."""
-    alive_s: float = 3.0
-    """The inspection must have checked in within this time."""
-    command_s: float = 30.0
-    """A command not carried out by then is refused."""
-
-
-@dataclass(frozen=True, slots=True)
-class Inputs:
-    """What one step sees. `control` and the rest of the command window as read at once."""
-
-    control: Control
-    plc_heartbeat: int
-    trigger_id: int
-    serial: str
-    command: int
-    health: Health
-    health_age_s: float
-    exposure_done_for: int | None = None
-    """Number of the trigger whose picture is taken."""
-    result: Result | None = None
-    arg: int = 0
-    command_done: tuple[int, bool] | None = None
-    """Number of the command that was carried out, and whether well."""
-    link: bool = True
-    """The PLC can be reached."""
-    link_was_lost: bool = False
-    """The last record may not have reached the PLC whole."""
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """All that the handshake remembers."""
-
-    phase: Phase = Phase.OFFLINE
-    control: Control = ALL_CONTROL
-    """As seen last; all bits at the start, so that a bit the PLC still holds is no edge."""
-    trigger: Trigger | None = None
-    last_id: int = 0
-    accepted: int = 0
-    """Triggers accepted so far."""
-    trigger_ack: bool = False
-    exposure_done: bool = False
-    missed: bool = False
-    error: bool = False
-    error_code: int = 0
-    cmd_done: bool = False
-    cmd_echo: int = 0
-    command: Command | None = None
-    """Being carried out."""
-    commands: int = 0
-    """Commands handed to the station so far."""
-    result: Result | None = None
-    shown_s: float = 0.0
-    process_ms: int = 0
-    sequence: int = 0
-    heartbeat: int = 0
-    heartbeat_s: float = 0.0
-    plc_heartbeat: int = -1
-    plc_seen_s: float = -1e9
-    trigger_since_s: float = 0.0
-    ack_since_s: float = 0.0
-    stuck: bool = False
-    offline: Offline = Offline.STARTING
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """Outcome of one step: the new state, and what to do."""
-
-    state: State
-    start: Trigger | None = None
-    command: Command | None = None
-    refused: bool = False
-    """The offered result was not shown."""
-    again: bool = False
-    """Step again at once, after publishing."""
+from station.plc import codes
+from station.plc.handshake_state import Inputs, Phase, State, Step, Times
+from station.plc.port import Command, Result, Trigger
+from station.plc.registers import (
+    ALL_SEGMENTS,
+    REASON_CODES,
+    REFUSED,
+    CommandCode,
+    Control,
+    Flags,
+    Offline,
+    VerdictCode,
+)
 
 
 def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
@@ -127,8 +35,8 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
     was_ready = ready(state)
     s = _clocks(state, inputs, now_s, times)
     s = replace(s, control=inputs.control)
-    s = _acknowledge(s, inputs, rising, now_s, times)
-    s, rising, command = _commanded(s, inputs, rising, now_s, times)
+    s = _acknowledge(s, inputs, rising, now_s=now_s, times=times)
+    s, rising, command = _commanded(s, inputs, rising, now_s=now_s, times=times)
     offline = _offline(s, inputs, now_s, times)
     s = replace(s, offline=offline)
     start: Trigger | None = None
@@ -138,19 +46,19 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
         s = _wiped(replace(s, phase=Phase.OFFLINE, trigger=None, trigger_ack=False))
         if rising & Control.TRIGGER:
             s = replace(s, missed=True)
-        return Step(s, command=command, refused=refused)
+        return Step(state=s, command=command, refused=refused)
 
     if s.phase is Phase.WIPED and s.trigger is not None:
         start = s.trigger
         s = replace(s, phase=Phase.BUSY, trigger_ack=True)
     elif s.phase is Phase.BUSY and s.trigger is not None:
-        s, refused = _busy(s, s.trigger, inputs, rising, now_s, times)
+        s, refused = _busy(s, s.trigger, inputs, rising, now_s=now_s, times=times)
     elif s.phase is Phase.SHOWN and (shown := s.result) is not None:
         if now_s - s.shown_s > times.result_ttl_s:
             s = _wiped(replace(s, phase=Phase.IDLE))
         elif inputs.link_was_lost and now_s - shown.trigger.accepted_s > times.deadline_s:
             trigger = shown.trigger
-            s = _shown(s, _error_result(trigger, REASON_CODES[Reason.DEADLINE], ERROR_LINK_LOST), trigger, now_s)
+            s = _shown(s, _error_result(trigger, REASON_CODES[Reason.DEADLINE], codes.ERROR_LINK_LOST), trigger, now_s)
 
     if s.phase is Phase.OFFLINE and offline is Offline.NONE:
         s = replace(s, phase=Phase.IDLE)
@@ -158,7 +66,7 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
         s = replace(s, phase=Phase.OFFLINE)
     if start is None and rising & Control.TRIGGER:
         s = _triggered(s, inputs, now_s, was_ready)
-    return Step(s, start, command, refused, again=s.phase is Phase.WIPED)
+    return Step(state=s, start=start, command=command, refused=refused, again=s.phase is Phase.WIPED)
 
 
 def ready(s: State) -> bool:
@@ -183,10 +91,10 @@ def _clocks(s: State, inputs: Inputs, now_s: float, times: Times) -> State:
         and now_s - s.trigger_since_s > max(times.stuck_s, times.deadline_s)
     ) or (inputs.control & s.control & Control.RESULT_ACK and now_s - s.ack_since_s > times.stuck_s)
     newly = bool(held) and not s.stuck
-    return replace(s, stuck=bool(held), error_code=s.error_code or (ERROR_STUCK_BIT if newly else 0))
+    return replace(s, stuck=bool(held), error_code=s.error_code or (codes.ERROR_STUCK_BIT if newly else 0))
 
 
-def _acknowledge(s: State, inputs: Inputs, rising: Control, now_s: float, times: Times) -> State:
+def _acknowledge(s: State, inputs: Inputs, rising: Control, *, now_s: float, times: Times) -> State:
     if not inputs.control & Control.TRIGGER or (s.stuck and now_s - s.trigger_since_s > times.stuck_s):
         s = replace(s, trigger_ack=False)
     if rising & Control.RESULT_ACK and s.phase is Phase.SHOWN:
@@ -196,7 +104,14 @@ def _acknowledge(s: State, inputs: Inputs, rising: Control, now_s: float, times:
     return s
 
 
-def _commanded(s: State, inputs: Inputs, rising: Control, now_s: float, times: Times) -> tuple[State, Control, Command | None]:
+def _commanded(
+    s: State,
+    inputs: Inputs,
+    rising: Control,
+    *,
+    now_s: float,
+    times: Times,
+) -> tuple[State, Control, Command | None]:
     """The state with the command heard, the edges with what it stands for, and what the station must do."""
     if s.command is not None:
         done = inputs.command_done is not None and inputs.command_done[0] == s.command.number
@@ -241,12 +156,20 @@ def _offline(s: State, inputs: Inputs, now_s: float, times: Times) -> Offline:
     return Offline.NONE if inputs.health.ready else inputs.health.offline
 
 
-def _busy(s: State, trigger: Trigger, inputs: Inputs, rising: Control, now_s: float, times: Times) -> tuple[State, bool]:
+def _busy(
+    s: State,
+    trigger: Trigger,
+    inputs: Inputs,
+    rising: Control,
+    *,
+    now_s: float,
+    times: Times,
+) -> tuple[State, bool]:
     if inputs.exposure_done_for == trigger.number:
         s = replace(s, exposure_done=True)
     late = now_s - trigger.accepted_s > times.deadline_s
     if late or rising & Control.ABORT:
-        why, code = (Reason.DEADLINE, ERROR_DEADLINE) if late else (Reason.ABORTED, ERROR_ABORTED)
+        why, code = (Reason.DEADLINE, codes.ERROR_DEADLINE) if late else (Reason.ABORTED, codes.ERROR_ABORTED)
         return _shown(s, _error_result(trigger, REASON_CODES[why], code), trigger, now_s), inputs.result is not None
     if inputs.result is not None and inputs.result.trigger == trigger:
         return _shown(s, inputs.result, trigger, now_s), False
@@ -279,11 +202,22 @@ def _triggered(s: State, inputs: Inputs, now_s: float, was_ready: bool) -> State
     if not (was_ready and ready(s)):
         return replace(s, missed=True)
     if inputs.trigger_id in (0, s.last_id):
-        return replace(s, missed=True, error_code=s.error_code or ERROR_BAD_TRIGGER_ID)
-    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s, s.accepted + 1, bool(inputs.control & Control.GOLDEN_CHECK))
+        return replace(s, missed=True, error_code=s.error_code or codes.ERROR_BAD_TRIGGER_ID)
+    golden = bool(inputs.control & Control.GOLDEN_CHECK)
+    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s, s.accepted + 1, golden=golden)
     s = replace(_wiped(s), accepted=trigger.number)
     return replace(s, phase=Phase.WIPED, trigger=trigger, last_id=inputs.trigger_id, exposure_done=False, missed=False)
 
 
 def _error_result(trigger: Trigger, reason: int, code: int) -> Result:
-    return Result(trigger, VerdictCode.ERROR, 0, reason, code, (), 0, ALL_SEGMENTS, Flags(0))
+    return Result(
+        trigger=trigger,
+        verdict=VerdictCode.ERROR,
+        inspection_id=0,
+        reason=reason,
+        error_code=code,
+        seg_scores=(),
+        seg_nok_mask=0,
+        seg_invalid_mask=ALL_SEGMENTS,
+        flags=Flags(0),
+    )

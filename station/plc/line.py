@@ -11,7 +11,8 @@ from contextlib import suppress
 
 from station.errors import LineError
 from station.plc import status_window
-from station.plc.handshake import ALL_CONTROL, Inputs, Phase, State, Step, Times, step
+from station.plc.handshake import step
+from station.plc.handshake_state import ALL_CONTROL, Inputs, Phase, State, Step, Times
 from station.plc.port import Command, Counts, Health, LineState, Result, Trigger
 from station.plc.registers import (
     COMMAND_START,
@@ -28,8 +29,7 @@ from station.plc.registers import (
     pack_window,
     unpack_window,
 )
-from station.plc.tls import client_context, server_context
-from station.plc.wire import WAITING, ClientWire, ServerWire, Wire
+from station.plc.wire import WAITING, Wire, make_wire
 from station.settings import PlcSettings
 
 log = logging.getLogger("weldgate.line")
@@ -53,15 +53,7 @@ def make_line(settings: PlcSettings, bus: Bus = lambda _time, _command, _status:
         stuck_s=settings.stuck_ms / 1000,
         plc_heartbeat_s=settings.plc_heartbeat_ms / 1000,
     )
-    low_first, tls = settings.low_word_first, settings.tls
-    if settings.mode == "server":
-        context = None if tls is None else server_context(tls)
-        idle_s = settings.writer_idle_ms / 1000
-        return ModbusLine(ServerWire(settings.host, settings.port, settings.allow, idle_s, low_first, context), times, bus)
-    context = None if tls is None else client_context(tls)
-    bases, poll_s, timeout_s = (settings.command_base, settings.status_base), settings.poll_ms / 1000, settings.timeout_ms / 1000
-    wire = ClientWire(settings.host, settings.port, settings.unit, bases, poll_s, timeout_s, low_first, context)
-    return ModbusLine(wire, times, bus)
+    return ModbusLine(make_wire(settings), times, bus)
 
 
 class ModbusLine:
@@ -71,7 +63,8 @@ class ModbusLine:
         self._wire, self._times, self._bus = wire, times, bus
         self._requests: queue.SimpleQueue[Trigger | Command] = queue.SimpleQueue()
         self._state = State()
-        self._health, self._health_s = Health(False, Offline.STARTING, False, 0), -1e9
+        self._health = Health(ready=False, offline=Offline.STARTING, failure=False, config_crc=0)
+        self._health_s = -1e9
         self._counts = {VerdictCode.OK: 0, VerdictCode.NOK: 0, VerdictCode.ERROR: 0}
         self._command_words = [int(ALL_CONTROL)] + [0] * (COMMAND_WORDS - 1)
         self._command = unpack_window(COMMAND_START, self._command_words)

@@ -7,7 +7,6 @@ import asyncio
 import contextvars
 import itertools
 import logging
-import ssl
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -27,14 +26,13 @@ from pymodbus.transport import CommParams, CommType
 from station import __version__
 from station.errors import LineError
 from station.plc.access import Complaints, Network, WriteRight, admitted
-from station.plc.framing import frames, refusal
+from station.plc.framing import CLIENT_WRITES, FUNCTIONS, frames, refusal
+from station.plc.tls import Tls
 
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL)
 
 READ, WRITE = 3, 4
 """Function codes of our own access; 4 can never be a client's write."""
-FUNCTIONS = frozenset((1, 2, 3, 4, 5, 6, 15, 16, 22, 23, 43))
-CLIENT_WRITES = frozenset((5, 6, 15, 16, 22, 23))
 MAX_PEERS, HANDSHAKE_S = 128, 60.0
 MAX_WAITING = 16
 """Requests of one peer that wait for their answer."""
@@ -133,12 +131,13 @@ class ModbusServer:
         self,
         host: str,
         port: int,
+        *,
         words: int,
         writable: range,
         on_write: Callable[[], None] = lambda: None,
         allow: Sequence[Network] = (),
         writer_idle_s: float = float("inf"),
-        tls: ssl.SSLContext | None = None,
+        tls: Tls = None,
     ) -> None:
         self.host, self.port = host, port
         self._words, self._writable, self._on_write = words, writable, on_write
@@ -231,7 +230,7 @@ class ModbusServer:
 class _Client(AsyncModbusTcpClient):
     """pymodbus' client, plain or over TLS; its own TLS client leaves out the MBAP header, as its TLS server does."""
 
-    def __init__(self, host: str, port: int, timeout_s: float, tls: ssl.SSLContext | None) -> None:
+    def __init__(self, host: str, port: int, timeout_s: float, tls: Tls) -> None:
         self.comm_params = CommParams(
             comm_type=CommType.TCP if tls is None else CommType.TLS,
             host=host,
@@ -248,7 +247,7 @@ class _Client(AsyncModbusTcpClient):
 class ModbusClient:
     """Registers of another machine. A request without an answer in time closes the connection: its effect is unknown."""
 
-    def __init__(self, host: str, port: int, unit: int = 1, timeout_s: float = 1.0, tls: ssl.SSLContext | None = None) -> None:
+    def __init__(self, host: str, port: int, *, unit: int = 1, timeout_s: float = 1.0, tls: Tls = None) -> None:
         self._host, self._port, self._unit, self._timeout_s, self._tls = host, port, unit, timeout_s, tls
         self._address = f"{host}:{port}"
         self._client: AsyncModbusTcpClient | None = None

@@ -1,6 +1,6 @@
 """What the cycle needs of a line, whatever the wire."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from station.plc.registers import CommandCode, Control, Flags, Offline, Status, VerdictCode
@@ -16,7 +16,7 @@ class Trigger:
     """Monotonic time."""
     number: int
     """Counts accepted triggers; never repeats, unlike the PLC's 16-bit id."""
-    golden: bool = False
+    golden: bool = field(default=False, kw_only=True)
     """A master lies in the nest: the answer is TEST whatever is found."""
 
 
@@ -31,7 +31,7 @@ class Command:
     since_s: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
     """What is published for one trigger. Scores x 10000; masks over segments."""
 
@@ -46,7 +46,7 @@ class Result:
     flags: Flags
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Health:
     """What the station says of itself."""
 

@@ -4,7 +4,7 @@ Addresses are 0-based PDU addresses; 32-bit values have the high word first; bit
 """
 
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum, IntFlag
 from functools import reduce
 from operator import or_
@@ -109,7 +109,9 @@ REFUSED = 0xFFFF
 """CMD_ECHO of a command that was not done."""
 ERROR_NOT_JUDGED = 0x1000
 """ERROR_CODE is this and REASON when a part could not be judged."""
-REASON_CODES = {reason: reason.code for reason in Reason}
+ALL_SEGMENTS = (1 << SEGMENTS) - 1
+"""SEG_NOK_MASK or SEG_INVALID_MASK with the bits of all segments."""
+REASON_CODES = {reason: code for code, reason in enumerate(Reason, start=1)}
 """Values of REASON; 0: none."""
 
 
@@ -121,7 +123,7 @@ class Register:
     name: str
     kind: Kind
     meaning: str
-    count: int = 1
+    count: int = field(default=1, kw_only=True)
     """Number of values, or of characters for ascii."""
 
     @property
@@ -141,7 +143,7 @@ MAP: tuple[Register, ...] = (
     Register(2, "TRIGGER_ID", "u16", "1 to 65535, must differ from the last accepted; 0 is invalid"),
     Register(3, "COMMAND", "u16", "command code for EXEC_COMMAND, see COMMAND"),
     Register(4, "ARG", "u16", "argument of the command: number of the recipe"),
-    Register(5, "PART_SERIAL", "ascii", "part serial, 0-padded, high byte first", 32),
+    Register(5, "PART_SERIAL", "ascii", "part serial, 0-padded, high byte first", count=32),
     Register(21, "PLC_TIME", "u32", "epoch seconds, optional"),
     Register(100, "STATUS", "u16", "bits, see Status"),
     Register(101, "HEARTBEAT", "u16", "+1 per 100 ms while the inspection is alive"),
@@ -162,8 +164,8 @@ MAP: tuple[Register, ...] = (
     Register(119, "WORST_SCORE", "u16", "its score x 10000"),
     Register(120, "T_PROCESS_MS", "u16", "trigger accepted to result, ms"),
     Register(121, "RESULT_AGE_10MS", "u16", "age of the result, 10 ms"),
-    Register(122, "SERIAL_ECHO", "ascii", "part serial as judged", 32),
-    Register(138, "SEG_SCORE", "u16", "score of each segment x 10000", SEGMENTS),
+    Register(122, "SERIAL_ECHO", "ascii", "part serial as judged", count=32),
+    Register(138, "SEG_SCORE", "u16", "score of each segment x 10000", count=SEGMENTS),
     Register(159, "MODE", "u16", "1 PRD: parts are judged; 2 SBY: READY is 0; 3 ENG: someone works on the station, see SERVICE"),
     Register(160, "OFFLINE_REASON", "u16", "why READY is 0"),
     Register(161, "CMD_ECHO", "u16", "last command done; 65535: refused"),

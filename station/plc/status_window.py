@@ -1,9 +1,22 @@
 """What the PLC reads for a state of the handshake, and what both windows say in return; pure."""
 
 from station.domain import SEGMENTS
-from station.plc.handshake import ALL_SEGMENTS, Phase, State, ready
+from station.plc.handshake import ready
+from station.plc.handshake_state import Phase, State
 from station.plc.port import Counts, Health, LineState
-from station.plc.registers import MAP_VERSION, TEST_F32, TEST_U32, Control, Offline, Status, Value, VerdictCode, named_bits, number
+from station.plc.registers import (
+    ALL_SEGMENTS,
+    MAP_VERSION,
+    TEST_F32,
+    TEST_U32,
+    Control,
+    Offline,
+    Status,
+    Value,
+    VerdictCode,
+    named_bits,
+    number,
+)
 
 
 def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, Value]:

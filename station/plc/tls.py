@@ -5,6 +5,9 @@ import ssl
 from station.errors import SettingsError
 from station.settings import TlsSettings
 
+Tls = ssl.SSLContext | None
+"""Context of a connection, or None for plain TCP."""
+
 
 def server_context(settings: TlsSettings) -> ssl.SSLContext:
     """For the side that listens; peers without a trusted certificate are refused. Raises SettingsError."""

@@ -1,6 +1,5 @@
 """The two windows on the wire: in our own memory that the PLC reaches into (server), or in the PLC's memory (client)."""
 
-import ssl
 import time
 from collections.abc import Callable, Sequence
 from typing import Protocol
@@ -9,6 +8,8 @@ from station.errors import LineError
 from station.plc.access import Network
 from station.plc.modbus import ModbusClient, ModbusServer
 from station.plc.registers import BY_NAME, COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS, Status, reordered
+from station.plc.tls import Tls, client_context, server_context
+from station.settings import PlcSettings
 
 SHOWS = int(Status.RESULT_VALID | Status.OK | Status.NOK)
 HEAD = BY_NAME["SEQ_HEAD"].address - STATUS_START
@@ -47,19 +48,26 @@ class ServerWire:
     tick_s = 0.01
 
     def __init__(
-        self, host: str, port: int, allow: Sequence[Network], writer_idle_s: float, low_word_first: bool, tls: ssl.SSLContext | None
+        self,
+        host: str,
+        port: int,
+        *,
+        allow: Sequence[Network],
+        writer_idle_s: float,
+        low_word_first: bool,
+        tls: Tls,
     ) -> None:
         self._low_word_first = low_word_first
         self._wake: Callable[[], None] = lambda: None
         self._server = ModbusServer(
             host,
             port,
-            STATUS_START + STATUS_WORDS,
-            range(COMMAND_START, COMMAND_START + COMMAND_WORDS),
-            lambda: self._wake(),
-            allow,
-            writer_idle_s,
-            tls,
+            words=STATUS_START + STATUS_WORDS,
+            writable=range(COMMAND_START, COMMAND_START + COMMAND_WORDS),
+            on_write=lambda: self._wake(),
+            allow=allow,
+            writer_idle_s=writer_idle_s,
+            tls=tls,
         )
 
     @property
@@ -93,15 +101,16 @@ class ClientWire:
         self,
         host: str,
         port: int,
+        *,
         unit: int,
         bases: tuple[int, int],
         poll_s: float,
         timeout_s: float,
         low_word_first: bool,
-        tls: ssl.SSLContext | None,
+        tls: Tls,
     ) -> None:
         """`bases`: addresses of the command and of the status window in the PLC."""
-        self._client = ModbusClient(host, port, unit, timeout_s, tls)
+        self._client = ModbusClient(host, port, unit=unit, timeout_s=timeout_s, tls=tls)
         self.port, self.tick_s = port, poll_s
         self._command_base, self._status_base = bases
         self._low_word_first = low_word_first
@@ -183,3 +192,26 @@ class ClientWire:
 
 def _but_age(words: list[int]) -> list[int]:
     return [*words[:AGE], *words[AGE + 1 :]]
+
+
+def make_wire(settings: PlcSettings) -> Wire:
+    """Make the wire that the settings name, not yet open. Raises SettingsError."""
+    if settings.mode == "server":
+        return ServerWire(
+            settings.host,
+            settings.port,
+            allow=settings.allow,
+            writer_idle_s=settings.writer_idle_ms / 1000,
+            low_word_first=settings.low_word_first,
+            tls=None if settings.tls is None else server_context(settings.tls),
+        )
+    return ClientWire(
+        settings.host,
+        settings.port,
+        unit=settings.unit,
+        bases=(settings.command_base, settings.status_base),
+        poll_s=settings.poll_ms / 1000,
+        timeout_s=settings.timeout_ms / 1000,
+        low_word_first=settings.low_word_first,
+        tls=None if settings.tls is None else client_context(settings.tls),
+    )

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { STATUS = 100, WORDS = 76 };
+enum { STATUS = STATUS_START, WORDS = STATUS_WORDS }; /* given by the compiler: -D */
 enum { READY = 2, TRIGGER_ACK = 4, RESULT_VALID = 32, OK = 64, NOK = 128 };
 enum { ENABLE = 1, TRIGGER = 2, RESULT_ACK = 4 };
 

@@ -49,7 +49,7 @@ def test_nobody_writes_beside_the_holder(events: list[tuple[int, float, bool]]) 
 
 def serve(conversation: Callable[[ModbusServer], Coroutine[Any, Any, None]], **options: Any) -> None:
     async def run() -> None:
-        server = ModbusServer("127.0.0.1", 0, 200, range(100), **options)
+        server = ModbusServer("127.0.0.1", 0, words=200, writable=range(100), **options)
         await server.start()
         try:
             await conversation(server)

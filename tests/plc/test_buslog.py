@@ -124,7 +124,8 @@ def test_a_full_disk_costs_edges_and_says_how_many(tmp_path: Path, monkeypatch: 
 
 def test_what_is_followed_is_what_is_written_also_over_midnight(tmp_path: Path) -> None:
     """Edge by edge, whole lines alone, each once."""
-    made = [Edge(f"2026-11-2{day}T12:00:00.{i:03d}+00:00", "PLC", "TRIGGER", i % 2, "ü" * (i % 7)) for day in (1, 2) for i in range(50)]
+    times = [f"2026-11-2{day}T12:00:00.{i:03d}+00:00" for day in (1, 2) for i in range(50)]
+    made = [Edge(time, "PLC", "TRIGGER", i % 2, note="ü" * (i % 7)) for i, time in enumerate(times)]
     lines = [(edge.time[:10], (json.dumps(asdict(edge)) + "\n").encode()) for edge in made]
     followed: list[Edge] = []
     place: tuple[str, int] = ("", 0)

@@ -10,11 +10,11 @@ from contextlib import suppress
 import pytest
 
 from deploy.demo import free_ports
-from deploy.judge import WELL, Judge
+from deploy.judge import WELL, Judge, judged
 from station.plc.line import make_line
 from station.plc.modbus import ModbusServer
 from station.plc.port import Result, Trigger
-from station.plc.registers import STATUS_START, STATUS_WORDS, Flags, Offline, VerdictCode
+from station.plc.registers import STATUS_START, STATUS_WORDS, Offline, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
 from station.plc.wire import SHOWS, ClientWire
@@ -22,7 +22,7 @@ from station.settings import PlcSettings
 
 
 def ok(trigger: Trigger) -> Result:
-    return Result(trigger, VerdictCode.OK, trigger.number, 0, 0, (5,) * 21, 0, 0, Flags(0))
+    return judged(trigger, VerdictCode.OK)
 
 
 class Proxy:
@@ -83,7 +83,7 @@ def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(at_writ
 
     def decide(trigger: Trigger) -> Result:
         verdict = VerdictCode.NOK if trigger.serial.startswith("BAD") else VerdictCode.OK
-        return Result(trigger, verdict, trigger.number, 0, 0, (5,) * 21, 0, 0, Flags(0))
+        return judged(trigger, verdict)
 
     async def conversation() -> list[Answer]:
         plc = SimulatedLine(windows, accept_simulated=False)
@@ -186,7 +186,13 @@ def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
     rng, words = random.Random(7), STATUS_START + STATUS_WORDS
 
     async def publish_many() -> None:
-        plc = ModbusServer("127.0.0.1", ports, words, range(STATUS_START, words), lambda: looks.append(asyncio.create_task(look())))
+        plc = ModbusServer(
+            "127.0.0.1",
+            ports,
+            words=words,
+            writable=range(STATUS_START, words),
+            on_write=lambda: looks.append(asyncio.create_task(look())),
+        )
         looks: list[asyncio.Task[None]] = []
         seen: list[int] = []
 
@@ -194,7 +200,16 @@ def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
             seen.extend(await plc.read(STATUS_START, 1))
 
         await plc.start()
-        wire = ClientWire("127.0.0.1", ports, 1, (0, STATUS_START), 0.005, 1.0, False, None)
+        wire = ClientWire(
+            "127.0.0.1",
+            ports,
+            unit=1,
+            bases=(0, STATUS_START),
+            poll_s=0.005,
+            timeout_s=1.0,
+            low_word_first=False,
+            tls=None,
+        )
         await wire.read_command()
         before = [0] * STATUS_WORDS
         for head in range(1, 200):

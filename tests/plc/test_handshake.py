@@ -1,23 +1,39 @@
 """The handshake as a law: whatever the inputs and times, OK is only ever shown for a judged frame of that trigger."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
+from deploy.judge import judged
 from station.plc import status_window
-from station.plc.handshake import Inputs, State, Step, Times, ready, step
+from station.plc.handshake import ready, step
+from station.plc.handshake_state import Inputs, State, Step, Times
 from station.plc.port import Command, Counts, Health, Result, Trigger
-from station.plc.registers import REFUSED, CommandCode, Control, Flags, Offline, Status, VerdictCode, number
+from station.plc.registers import REFUSED, CommandCode, Control, Offline, Status, VerdictCode, number
 
-WELL = Health(True, Offline.NONE, False, 7)
-LOST = Health(False, Offline.CAMERA_LOST, True, 7)
+WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7)
+LOST = Health(ready=False, offline=Offline.CAMERA_LOST, failure=True, config_crc=7)
 TIMES = Times()
 ON = Control.ENABLE
 
 
 def result(trigger: Trigger, verdict: VerdictCode = VerdictCode.OK) -> Result:
-    return Result(trigger, verdict, 9, 0, 0x1001 if verdict is VerdictCode.ERROR else 0, (0,) * 21, 0, 0, Flags(0))
+    return replace(judged(trigger, verdict, 9), error_code=0x1001 if verdict is VerdictCode.ERROR else 0)
+
+
+def inputs(control: Control, trigger_id: int, health_age_s: float, beat: int = 999) -> Inputs:
+    return Inputs(
+        control=control,
+        plc_heartbeat=beat,
+        trigger_id=trigger_id,
+        serial="S",
+        command=0,
+        health=WELL,
+        health_age_s=health_age_s,
+    )
 
 
 class Driver:
@@ -41,19 +57,19 @@ class Driver:
         self.now += wait_s
         self.beat += not self.silent
         inputs = Inputs(
-            self.control,
-            self.beat & 0xFFFF,
-            self.trigger_id,
-            "S",
-            self.command,
-            self.health,
-            0.0,
-            exposed,
-            offered,
-            2,
-            done,
-            link,
-            link_was_lost,
+            control=self.control,
+            plc_heartbeat=self.beat & 0xFFFF,
+            trigger_id=self.trigger_id,
+            serial="S",
+            command=self.command,
+            health=self.health,
+            health_age_s=0.0,
+            exposure_done_for=exposed,
+            result=offered,
+            arg=2,
+            command_done=done,
+            link=link,
+            link_was_lost=link_was_lost,
         )
         outcome = step(self.state, inputs, self.now, TIMES)
         self.state = outcome.state
@@ -114,7 +130,7 @@ def test_the_old_result_is_gone_before_trigger_ack(plc: Driver) -> None:
     plc.step()
     plc.control, plc.trigger_id = ON | Control.TRIGGER, 2
     plc.now += 0.01
-    wiped = step(plc.state, Inputs(plc.control, 500, 2, "S", 0, WELL, 0.0), plc.now, TIMES)
+    wiped = step(plc.state, inputs(plc.control, 2, 0.0, beat=500), plc.now, TIMES)
     assert wiped.again
     assert wiped.start is None
     shown = status_window.values(wiped.state, WELL, plc.now, Counts())
@@ -258,8 +274,8 @@ def test_a_command_of_the_line_leaves_an_unread_result_alone(code: CommandCode, 
 def test_the_heartbeat_goes_on_through_a_long_part(plc: Driver) -> None:
     plc.trigger(1)
     before = plc.state.heartbeat
-    inputs = Inputs(plc.control, 999, 1, "S", 0, WELL, TIMES.deadline_s)
-    assert step(plc.state, inputs, plc.now + 0.2, TIMES).state.heartbeat == before + 1
+    silent = inputs(plc.control, 1, TIMES.deadline_s)
+    assert step(plc.state, silent, plc.now + 0.2, TIMES).state.heartbeat == before + 1
 
 
 def test_a_command_that_nobody_carries_out_is_refused_in_the_end(plc: Driver) -> None:
@@ -340,8 +356,8 @@ def test_the_heartbeat_stands_still_when_the_inspection_does(plc: Driver) -> Non
     for _ in range(5):
         plc.step(wait_s=0.11)
     assert plc.state.heartbeat == before + 5
-    inputs = Inputs(ON, 999, 0, "", 0, WELL, TIMES.alive_s + 1)
-    stalled = step(plc.state, inputs, plc.now + 1, TIMES).state
+    silent = inputs(ON, 0, TIMES.alive_s + 1)
+    stalled = step(plc.state, silent, plc.now + 1, TIMES).state
     assert stalled.heartbeat == plc.state.heartbeat
     assert stalled.offline is Offline.STATION_STALLED
 

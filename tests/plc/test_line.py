@@ -11,17 +11,26 @@ from typing import Any
 import pytest
 
 from deploy.demo import free_ports
+from deploy.judge import judged
 from station.errors import LineError
 from station.plc.buslog import BusLog, read_bus
 from station.plc.line import ModbusLine, make_line
 from station.plc.modbus import ModbusClient
-from station.plc.port import Command, Health, Result, Trigger
-from station.plc.registers import STATUS_START, STATUS_WORDS, CommandCode, Flags, Offline, Value, VerdictCode, unpack_window
+from station.plc.port import Command, Health, Trigger
+from station.plc.registers import (
+    STATUS_START,
+    STATUS_WORDS,
+    CommandCode,
+    Offline,
+    Value,
+    VerdictCode,
+    unpack_window,
+)
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows, RemoteWindows
 from station.settings import PlcSettings
 
-WELL = Health(True, Offline.NONE, False, 7)
+WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7)
 
 
 @dataclass
@@ -99,7 +108,7 @@ class Judging:
                 self.triggers.append(request)
                 self._line.exposure_done(request)
                 time.sleep(self._delay_s)
-                result = Result(request, self._verdict, 1000 + len(self.triggers), 0, 0, (5,) * 21, 0, 0, Flags(0))
+                result = judged(request, self._verdict, 1000 + len(self.triggers))
                 self.shown.append(self._line.publish(result))
             elif isinstance(request, Command):
                 self.commands.append(request)
@@ -197,7 +206,7 @@ def test_commands_are_carried_out_or_refused_and_parts_go_on(rig: Rig) -> None:
 def test_a_station_that_is_not_well_says_why_and_its_heartbeat_stands(rig: Rig) -> None:
     async def conversation(plc: SimulatedLine) -> tuple[Value, Value, Value]:
         assert await plc.wait_ready(5.0)
-        judging.health = Health(False, Offline.CAMERA_LOST, True, 7)
+        judging.health = Health(ready=False, offline=Offline.CAMERA_LOST, failure=True, config_crc=7)
         await plc.meanwhile(asyncio.sleep(0.3))
         before = plc.status()["HEARTBEAT"]
         await plc.meanwhile(asyncio.sleep(0.4))

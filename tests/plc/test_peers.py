@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from deploy.judge import Judge
+from deploy.judge import Judge, judged
 from station.plc.line import ModbusLine
 from station.plc.port import Result, Trigger
-from station.plc.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Flags, VerdictCode
+from station.plc.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, VerdictCode
 
 HERE = Path(__file__).resolve().parent
 
@@ -74,14 +74,16 @@ def test_mbpoll_is_refused_where_only_the_station_writes(line: ModbusLine) -> No
 
 
 def test_a_libmodbus_plc_does_the_whole_handshake_a_thousand_times(line: ModbusLine, tmp_path: Path) -> None:
-    build = ["gcc", "-O1", "-Wall", "-Werror", "-I/usr/include/modbus", str(HERE / "peer.c"), "-o", str(tmp_path / "peer"), "-lmodbus"]
+    sizes = [f"-DSTATUS_START={STATUS_START}", f"-DSTATUS_WORDS={STATUS_WORDS}"]
+    build = ["gcc", "-O1", "-Wall", "-Werror", "-I/usr/include/modbus", *sizes, str(HERE / "peer.c")]
+    build += ["-o", str(tmp_path / "peer"), "-lmodbus"]
     subprocess.run(build, check=True, timeout=60)
     seen: list[int] = []
 
     def decide(trigger: Trigger) -> Result:
         seen.append(trigger.trigger_id)
         verdict = VerdictCode.OK if trigger.trigger_id % 3 else VerdictCode.NOK
-        return Result(trigger, verdict, trigger.number, 0, 0, (9,) * 21, 0, 0, Flags(0))
+        return judged(trigger, verdict)
 
     with Judge(line, decide):
         done = subprocess.run([tmp_path / "peer", str(line.port), "1000"], capture_output=True, text=True, timeout=100, check=False)

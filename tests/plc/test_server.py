@@ -3,14 +3,16 @@
 import asyncio
 import socket
 import time
+from dataclasses import replace
 
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
+from deploy.judge import judged
 from station.errors import LineError
 from station.plc.line import ModbusLine, make_line
-from station.plc.port import Result, Trigger
-from station.plc.registers import COMMAND_WORDS, Flags, VerdictCode
+from station.plc.port import Trigger
+from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Flags, VerdictCode
 from station.settings import PlcSettings
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:pymodbus")
@@ -89,10 +91,11 @@ def test_a_result_is_readable_when_publish_returns(line: ModbusLine) -> None:
     assert isinstance(trigger, Trigger)
     assert trigger.trigger_id == 77
     assert line.in_work(trigger)
-    assert line.publish(Result(trigger, VerdictCode.NOK, 70000, 1, 0, (5,) * 21, 8, 0, Flags.SIMULATED))
+    result = replace(judged(trigger, VerdictCode.NOK, 70000), reason=1, seg_nok_mask=8, flags=Flags.SIMULATED)
+    assert line.publish(result)
 
     async def read(client: AsyncModbusTcpClient) -> list[int]:
-        return list((await client.read_holding_registers(100, count=76)).registers)
+        return list((await client.read_holding_registers(STATUS_START, count=STATUS_WORDS)).registers)
 
     words = talk(line, read)
     assert isinstance(words, list)

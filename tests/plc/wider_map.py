@@ -1,7 +1,7 @@
-"""A map with a ninth bit of CONTROL, a fourth flag and one more register in each window; run it as a module of its own.
+"""A map with a ninth bit of CONTROL, a fourth flag and one more register in each window; run as a module.
 
-The sources of the map are changed before anything imports them, as somebody who adds these would change them. Then every
-place that handles bits or sizes is asked.
+The sources of the map are changed before anything imports them, as somebody who adds these would change them.
+Then every place that handles bits or sizes is asked.
 """
 
 import asyncio
@@ -28,7 +28,11 @@ def change(name: str, *changes: tuple[str, str]) -> None:
     exec(compile(source, path, "exec"), module.__dict__)
 
 
-change("station.register_windows", ("\nCOMMAND_WORDS =", "\nCOMMAND_WORDS = 1 +"), ("\nSTATUS_WORDS =", "\nSTATUS_WORDS = 1 +"))
+change(
+    "station.register_windows",
+    ("\nCOMMAND_WORDS =", "\nCOMMAND_WORDS = 1 +"),
+    ("\nSTATUS_WORDS =", "\nSTATUS_WORDS = 1 +"),
+)
 change(
     "station.plc.registers",
     ("    ABORT = 128\n", "    ABORT = 128\n    NINTH = 256\n"),
@@ -47,7 +51,7 @@ from deploy.demo import free_ports  # noqa: E402
 from station.plc.block.dialects import structured_text  # noqa: E402
 from station.plc.buslog import edges  # noqa: E402
 from station.plc.document import as_markdown  # noqa: E402
-from station.plc.handshake import State  # noqa: E402
+from station.plc.handshake_state import State  # noqa: E402
 from station.plc.line import make_line  # noqa: E402
 from station.plc.modbus import ModbusClient  # noqa: E402
 from station.plc.port import LineState  # noqa: E402
@@ -67,7 +71,8 @@ def handshake() -> None:
 def line() -> None:
     """A bit and a register that a PLC writes reach the handshake and the bus recorder."""
     looks: list[dict[str, Value]] = []
-    station = make_line(PlcSettings(port=free_ports(1)[0]), lambda _time, command, _status: looks.append(command))
+    settings = PlcSettings(port=free_ports(1)[0])
+    station = make_line(settings, lambda _time, command, _status: looks.append(command))
 
     async def write() -> None:
         client = ModbusClient("127.0.0.1", station.port)
@@ -85,8 +90,8 @@ def line() -> None:
     try:
         asyncio.run(write())
         assert station._inputs(0.0, True, None).control == station.state().control == NINTH
-        adapter = TypeAdapter(LineState)
-        assert adapter.validate_json(adapter.dump_json(station.state())).control == NINTH, "the window reads it too"
+        channel = TypeAdapter(LineState)
+        assert channel.validate_json(channel.dump_json(station.state())).control == NINTH, "for the window"
     finally:
         station.stop()
     assert looks[-1]["MORE"] == 4711
@@ -102,7 +107,8 @@ def bus() -> None:
 def simulated() -> None:
     """The simulated PLC reads the flag."""
     plc = SimulatedLine.at("127.0.0.1", 1, accept_simulated=True)
-    seen: dict[str, Value] = {"VERDICT": 1, "INSPECTION_ID": 1, "REASON": 0, "FLAGS": int(FOURTH | Flags.NOVEL)}
+    flags = int(FOURTH | Flags.NOVEL)
+    seen: dict[str, Value] = {"VERDICT": 1, "INSPECTION_ID": 1, "REASON": 0, "FLAGS": flags}
     assert plc._answer(seen, 1.0).flags == FOURTH | Flags.NOVEL
 
 
@@ -117,7 +123,11 @@ def documents() -> None:
 def settings() -> None:
     """The settings refuse windows that overlap by one register, and one that ends beyond the last address."""
     apart = {"mode": "client", "status_base": 1000}
-    for base, said in ((1000 - COMMAND_WORDS + 1, f"{SIZES} overlap"), (65536 - COMMAND_WORDS + 1, "less than or equal to")):
+    refused = (
+        (1000 - COMMAND_WORDS + 1, f"{SIZES} overlap"),
+        (65536 - COMMAND_WORDS + 1, "less than or equal to"),
+    )
+    for base, said in refused:
         with pytest.raises(ValueError, match=said):
             PlcSettings.model_validate(apart | {"command_base": base})
     PlcSettings.model_validate(apart | {"command_base": 1000 - COMMAND_WORDS})

@@ -196,7 +196,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("fault", "reason", "there"), FAULTS)
-def test_a_grab_that_fails_is_a_reason_with_its_duration_and_ends_in_error(rig: Rig, fault: Exception, reason: Reason, there: bool) -> None:
+def test_a_grab_that_fails_is_a_reason(rig: Rig, fault: Exception, reason: Reason, there: bool) -> None:
     rig.camera.fault = fault
     rig.procedure.part(TRIGGER, rig.loaded)
     inspection = rig.event.record.inspection
@@ -211,7 +211,7 @@ def test_a_grab_has_a_frame_or_a_reason_never_both_nor_neither() -> None:
         Grab(None, None, 1.0)
 
 
-def test_a_network_that_fails_ends_in_error_and_keeps_the_duration_of_the_grab(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_network_that_fails_ends_in_error_after_a_grab(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*_: object) -> None:
         raise ZeroDivisionError
 

@@ -46,18 +46,29 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
     archive.close()
     before = {path: path.read_bytes() for path in folder.rglob("*.json")}
     for who in ("Ada", "Bob"):
-        give(folder, who, True, 1, "NOK", Opinion.RIGHT)
-        give(folder, who, True, 2, "NOK", Opinion.FALSE_CALL, "soot")
-        give(folder, who, True, 3, "OK", Opinion.MISSED, marks={7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD})
+        give(folder, who, may_second=True, inspection_id=1, verdict="NOK", opinion=Opinion.RIGHT)
+        give(folder, who, may_second=True, inspection_id=2, verdict="NOK", opinion=Opinion.FALSE_CALL, comment="soot")
+        marks = {7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD}
+        give(folder, who, may_second=True, inspection_id=3, verdict="OK", opinion=Opinion.MISSED, marks=marks)
         marks = {7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD, 9: Reason.MISSING_WELD}
-        give(folder, who, True, 5, "OK", Opinion.MISSED, "see the section", marks)
-    give(folder, "Ada", True, 4, "NOK", Opinion.FALSE_CALL)
+        give(
+            folder,
+            who,
+            may_second=True,
+            inspection_id=5,
+            verdict="OK",
+            opinion=Opinion.MISSED,
+            comment="see the section",
+            marks=marks,
+        )
+    give(folder, "Ada", may_second=True, inspection_id=4, verdict="NOK", opinion=Opinion.FALSE_CALL)
     with pytest.raises(ValueError, match="cannot be said of ERROR"):
-        give(folder, "Ada", True, 6, "ERROR", Opinion.RIGHT)
+        give(folder, "Ada", may_second=True, inspection_id=6, verdict="ERROR", opinion=Opinion.RIGHT)
+    marks = {7: Reason.HOLE}
     with pytest.raises(ValueError, match="cannot be said of OK"):
-        give(folder, "Ada", True, 5, "OK", Opinion.RIGHT, marks={7: Reason.HOLE})
+        give(folder, "Ada", may_second=True, inspection_id=5, verdict="OK", opinion=Opinion.RIGHT, marks=marks)
     with pytest.raises(LoginError, match="level quality"):
-        give(folder, "Cy", False, 4, "NOK", Opinion.RIGHT)
+        give(folder, "Cy", may_second=False, inspection_id=4, verdict="NOK", opinion=Opinion.RIGHT)
     assert [reviews(folder)[n].state for n in (1, 2, 3, 4)] == [State.AGREED] * 3 + [State.ONE]
     assert {path: path.read_bytes() for path in folder.rglob("*.json")} == before
     problems = list(export(read_records(folder), folder, tmp_path / "out", "reviewed"))

@@ -196,8 +196,16 @@ class HistoryPage(Page):
         try:
             user, verdict = self._session.who(Level.OPERATOR), self.film.rows[number].verdict
             marks = self.record.marks if opinion is Opinion.MISSED else {}
-            second, comment = user.level >= Level.QUALITY, self.comment.text().strip()
-            give(self._session.folder, user.name, second, number, verdict, opinion, comment, marks)
+            give(
+                self._session.folder,
+                user.name,
+                may_second=user.level >= Level.QUALITY,
+                inspection_id=number,
+                verdict=verdict,
+                opinion=opinion,
+                comment=self.comment.text().strip(),
+                marks=marks,
+            )
         except WeldgateError as error:
             self._problem.setText(data(str(error)))
             return

@@ -58,14 +58,16 @@ def lamp(status: StatusEvent | None, part: PartEvent | None, now_s: float) -> La
     if status.service:
         return Lamp("SERVICE", "⚙", Tone.TEST, 1.0, "works on the station", status.service)
     age_s = 1e9 if part is None or part.at_s < status.started_s else now_s - part.at_s
-    if part is not None and age_s <= GONE_S and not (part.told is VerdictCode.OK and status.line.offline is not Offline.NONE):
+    offline = status.line.offline
+    blocked = offline is not Offline.NONE
+    if part is not None and age_s <= GONE_S and not (part.told is VerdictCode.OK and blocked):
         return _of_part(part, Alarm.MASTERS_DUE in status.alarms, _fade(age_s))
-    if status.line.offline is Offline.PLC_SILENT:
+    if offline is Offline.PLC_SILENT:
         return Lamp("PLC LOST", "⚠", Tone.WARN, 1.0, "the PLC's heartbeat stands still")
-    if status.line.offline is Offline.CAMERA_LOST:
+    if offline is Offline.CAMERA_LOST:
         return Lamp("OFFLINE", "○", Tone.WARN, 1.0, "camera lost", status.camera_message)
-    if status.line.offline is not Offline.NONE:
-        return Lamp("OFFLINE", "○", Tone.QUIET, 1.0, WHY_OFFLINE[status.line.offline])
+    if offline is not Offline.NONE:
+        return Lamp("OFFLINE", "○", Tone.QUIET, 1.0, WHY_OFFLINE[offline])
     return Lamp("NO VERDICT", "–", Tone.QUIET, 1.0, "waiting for a part")
 
 

@@ -3,7 +3,7 @@
 Only what IEC 61131-3 and SCL have in common is used, so that the dialects differ in declarations alone.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from station.plc.registers import BY_NAME, COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Control, Flags, Register, Status
@@ -25,7 +25,7 @@ class Variable:
     name: str
     type: str
     meaning: str
-    initial: str = ""
+    initial: str = field(default="", kw_only=True)
 
 
 def word(name: str, offset: int = 0) -> str:
@@ -75,10 +75,10 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("input", "Start", "BOOL", "rising edge: judge the part that is in the nest now"),
     Variable("input", "Golden", "BOOL", "a master is in the nest; it never passes"),
     Variable("input", "Serial", "ARRAY[0..15] OF WORD", "serial of the part, two characters a word, the first in the high byte"),
-    Variable("input", "Recipe", "UINT", "expected ACTIVE_RECIPE", "1"),
+    Variable("input", "Recipe", "UINT", "expected ACTIVE_RECIPE", initial="1"),
     Variable("input", "Crc", "WORD", "released CONFIG_CRC"),
     Variable("input", "AcceptSimulated", "BOOL", "TRUE only in a demonstration without a camera"),
-    Variable("input", "WindowTime", "TIME", "the result must come within", "T#4s"),
+    Variable("input", "WindowTime", "TIME", "the result must come within", initial="T#4s"),
     Variable("input", "Extra", "WORD", "further bits of CONTROL, as CLEAR_ERROR, EXEC_COMMAND, SET_OFFLINE, ABORT"),
     Variable("input", "CommandCode", "UINT", "COMMAND for EXEC_COMMAND"),
     Variable("input", "Argument", "UINT", "ARG of the command"),

@@ -49,7 +49,7 @@ class Knob(StrEnum):
     STORM = "reconnect storm"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
     """What the PLC made of one part."""
 
@@ -163,16 +163,17 @@ class SimulatedLine:
         refused = REFUSALS[v.Refusal] or None
         values = seen or {"VERDICT": 0, "INSPECTION_ID": 0, "REASON": 0, "FLAGS": 0}
         code = number(values, "VERDICT")
+        answered = seen is not None and v.Refusal not in (NOT_READY, NO_RESULT)
         return Answer(
-            v.PartOk,
-            VerdictCode(code) if code in list(VerdictCode) else VerdictCode.NONE,
-            refused,
-            took_ms,
-            number(values, "INSPECTION_ID"),
-            number(values, "REASON"),
-            seen is not None and v.Refusal not in (NOT_READY, NO_RESULT) and not v.Window[0] & Status.RESULT_VALID,
-            named_bits(Flags, number(values, "FLAGS")),
-            v.TriggerId,
+            accepted=v.PartOk,
+            verdict=VerdictCode(code) if code in list(VerdictCode) else VerdictCode.NONE,
+            refused_by=refused,
+            trigger_to_valid_ms=took_ms,
+            inspection_id=number(values, "INSPECTION_ID"),
+            reason=number(values, "REASON"),
+            handshake_complete=answered and not v.Window[0] & Status.RESULT_VALID,
+            flags=named_bits(Flags, number(values, "FLAGS")),
+            trigger_id=v.TriggerId,
         )
 
     async def _until(self, condition: Callable[[], bool], timeout_s: float) -> bool:

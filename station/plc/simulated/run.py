@@ -13,7 +13,7 @@ KNOB_SHARE = 0.1
 """Share of the parts in which a named knob is turned."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LineRun:
     """What is wanted."""
 

@@ -71,7 +71,7 @@ class OwnWindows:
         self._server = self._at(port)
 
     def _at(self, port: int) -> ModbusServer:
-        return ModbusServer(self._host, port, self._words, range(STATUS_START, self._words))
+        return ModbusServer(self._host, port, words=self._words, writable=range(STATUS_START, self._words))
 
     @property
     def port(self) -> int:
