@@ -1,5 +1,6 @@
 """What the PLC reads for a state of the handshake, and what both windows say in return; pure."""
 
+from station import __version__
 from station.domain import SEGMENTS
 from station.plc.handshake import ready
 from station.plc.handshake_state import Phase, State
@@ -17,6 +18,10 @@ from station.plc.registers import (
     named_bits,
     number,
 )
+
+_MAJOR, _MINOR = map(int, __version__.split(".")[:2])
+SW_VERSION = _MAJOR * 256 + _MINOR
+"""Value of the register of the same name."""
 
 
 def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, Value]:
@@ -68,7 +73,7 @@ def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, 
         "TEST_U32": TEST_U32,
         "TEST_F32": TEST_F32,
         "MAP_VERSION": MAP_VERSION,
-        "SW_VERSION": 0x0001,
+        "SW_VERSION": SW_VERSION,
     }
     if shown is not None:
         worst = max(range(len(shown.seg_scores)), key=lambda i: shown.seg_scores[i], default=0)

@@ -7,10 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tree_sitter import Language, Parser
 
+from station import __version__
 from station.__main__ import main
+from station.plc import status_window
 from station.plc.block.definition import VARIABLES
 from station.plc.block.dialects import scl, structured_text, symbols
 from station.plc.document import as_csv
+from station.plc.handshake_state import State
+from station.plc.port import Counts, Health
 from station.plc.registers import (
     BY_NAME,
     COMMAND_START,
@@ -20,6 +24,7 @@ from station.plc.registers import (
     STATUS_WORDS,
     Control,
     Flags,
+    Offline,
     Status,
     all_bits,
     named_bits,
@@ -122,6 +127,13 @@ def test_scl_marks_every_variable_and_nothing_else() -> None:
     for variable in VARIABLES:
         assert not re.search(rf"(?<![#.\w]){variable.name}\b", statements), variable.name
     assert set(re.findall(r"(?<![\dT])#(\w+)", statements)) <= {v.name for v in VARIABLES}
+
+
+def test_the_software_version_is_that_of_the_package() -> None:
+    well = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7)
+    version = status_window.values(State(), well, 0.0, Counts())["SW_VERSION"]
+    assert isinstance(version, int)
+    assert __version__.startswith(f"{version // 256}.{version % 256}.")
 
 
 def test_reordered_words_come_back() -> None:
