@@ -109,7 +109,6 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     inspection = loaded.inspector.inspect(image)
     record = archive.commit(archive.begin(frame), inspection, Part("SOAK", 1, Origin.SIMULATED), loaded.provenance, frame.grabbed_at)
     archive.close()
-    nok = inspection.nok
     words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1}))
     now_s = time.monotonic()
     line = LineState(
@@ -133,7 +132,6 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     part = PartEvent(
         at_s=now_s,
         record=record,
-        seg_nok=nok,
         novel=False,
         drift=None,
         told=VerdictCode.NOK,

@@ -9,12 +9,13 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from station.defects import Reason
 from station.domain import Verdict
 from station.durable import write_whole
-from station.plc.registers import REASON_CODES, VerdictCode
+from station.plc.registers import VerdictCode
 from station.plc.simulated.line import Answer
 
-REASONS = {code: str(reason) for reason, code in REASON_CODES.items()}
+REASONS = {reason.code: str(reason) for reason in Reason}
 
 
 @dataclass(frozen=True, slots=True)

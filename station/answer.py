@@ -2,7 +2,7 @@
 
 from station.domain import Origin, Purpose, Verdict
 from station.plc.port import Result, Trigger
-from station.plc.registers import ALL_SEGMENTS, ERROR_NOT_JUDGED, REASON_CODES, Flags, VerdictCode
+from station.plc.registers import ALL_SEGMENTS, ERROR_NOT_JUDGED, Flags, VerdictCode
 from station.records import Record
 
 
@@ -21,14 +21,13 @@ def answer(
     trigger: Trigger,
     record: Record,
     *,
-    nok: tuple[bool, ...],
     novel: bool,
     drifting: bool,
     trusted: bool,
 ) -> Result:
-    """The result for a trigger; `nok`: refused segments, empty if none was judged."""
+    """Return the result for a trigger."""
     inspection = record.inspection
-    reason = 0 if inspection.reason is None else REASON_CODES[inspection.reason]
+    reason = 0 if inspection.reason is None else inspection.reason.code
     flags = (
         (Flags.SIMULATED, record.origin is Origin.SIMULATED),
         (Flags.NOVEL, novel),
@@ -41,7 +40,7 @@ def answer(
         reason=reason,
         error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
         seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
-        seg_nok_mask=sum(1 << i for i, bad in enumerate(nok) if bad),
+        seg_nok_mask=sum(1 << i for i, bad in enumerate(inspection.nok) if bad),
         seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
         flags=Flags(sum(flag for flag, on in flags if on)),
     )

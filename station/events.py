@@ -52,7 +52,6 @@ class PartEvent:
     at_s: float
     """Monotonic time at which it was sent."""
     record: Record
-    seg_nok: tuple[bool, ...]
     novel: bool
     """The picture is unlike all training images: its verdict deserves less trust, and the line a look."""
     drift: Drift | None

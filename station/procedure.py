@@ -81,7 +81,6 @@ class Procedure:
             PartEvent(
                 at_s=time.monotonic(),
                 record=record,
-                seg_nok=(),
                 novel=False,
                 drift=None,
                 told=VerdictCode.ERROR,
@@ -100,13 +99,12 @@ class Procedure:
         record = keep(self._archive, pending, inspection, part, provenance=loaded.provenance)
         record_ms = _ms_since(start)
         self._watched(record, trigger)
-        nok, novel = record.inspection.nok, loaded.inspector.is_novel(record.inspection)
-        answered = NOT_ANSWERED if trigger is None else self._answer(trigger, record, nok, novel)
+        novel = loaded.inspector.is_novel(record.inspection)
+        answered = NOT_ANSWERED if trigger is None else self._answer(trigger, record, novel)
         mark_shown(self._archive, record, answered.shown)
         event = PartEvent(
             at_s=time.monotonic(),
             record=record,
-            seg_nok=nok,
             novel=novel,
             drift=self._watch.drift,
             told=answered.verdict,
@@ -139,12 +137,12 @@ class Procedure:
         if record.purpose is Purpose.GOLDEN:
             self._watch.master(record.serial, record.verdict)
 
-    def _answer(self, trigger: Trigger, record: Record, nok: tuple[bool, ...], novel: bool) -> Answered:
+    def _answer(self, trigger: Trigger, record: Record, novel: bool) -> Answered:
         """Publish the result of a trigger; alarms and the log say what was wrong with it."""
         self._check_in()
         start = time.perf_counter()
         drifting, trusted = self._watch.drifting, self._watch.trusted
-        result = answer(trigger, record, nok=nok, novel=novel, drifting=drifting, trusted=trusted)
+        result = answer(trigger, record, novel=novel, drifting=drifting, trusted=trusted)
         shown = self._line.publish(result)
         publish_ms = _ms_since(start)
         if result.error_code or not shown:

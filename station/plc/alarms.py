@@ -11,7 +11,7 @@ from station.plc.codes import (
     ERROR_LINK_LOST,
     ERROR_STUCK_BIT,
 )
-from station.plc.registers import ERROR_NOT_JUDGED, REASON_CODES
+from station.plc.registers import ERROR_NOT_JUDGED
 
 
 class Alarm(IntEnum):
@@ -69,4 +69,4 @@ _PART_ACTIONS = {
     Reason.INTERNAL: "send the engine's log to the maker",
 }
 for _reason, _action in _PART_ACTIONS.items():
-    TEXTS[ERROR_NOT_JUDGED + REASON_CODES[_reason]] = Explained(str(_reason), _AGAIN + _action)
+    TEXTS[ERROR_NOT_JUDGED + _reason.code] = Explained(str(_reason), _AGAIN + _action)

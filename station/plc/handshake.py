@@ -19,7 +19,6 @@ from station.plc.handshake_state import Inputs, Phase, State, Step, Times
 from station.plc.port import Command, Result, Trigger
 from station.plc.registers import (
     ALL_SEGMENTS,
-    REASON_CODES,
     REFUSED,
     CommandCode,
     Control,
@@ -58,7 +57,7 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
             s = _wiped(replace(s, phase=Phase.IDLE))
         elif inputs.link_was_lost and now_s - shown.trigger.accepted_s > times.deadline_s:
             trigger = shown.trigger
-            s = _shown(s, _error_result(trigger, REASON_CODES[Reason.DEADLINE], codes.ERROR_LINK_LOST), trigger, now_s)
+            s = _shown(s, _error_result(trigger, Reason.DEADLINE.code, codes.ERROR_LINK_LOST), trigger, now_s)
 
     if s.phase is Phase.OFFLINE and offline is Offline.NONE:
         s = replace(s, phase=Phase.IDLE)
@@ -170,7 +169,7 @@ def _busy(
     late = now_s - trigger.accepted_s > times.deadline_s
     if late or rising & Control.ABORT:
         why, code = (Reason.DEADLINE, codes.ERROR_DEADLINE) if late else (Reason.ABORTED, codes.ERROR_ABORTED)
-        return _shown(s, _error_result(trigger, REASON_CODES[why], code), trigger, now_s), inputs.result is not None
+        return _shown(s, _error_result(trigger, why.code, code), trigger, now_s), inputs.result is not None
     if inputs.result is not None and inputs.result.trigger == trigger:
         return _shown(s, inputs.result, trigger, now_s), False
     return s, inputs.result is not None

@@ -10,7 +10,6 @@ from functools import reduce
 from operator import or_
 from typing import Literal, TypeVar
 
-from station.defects import Reason
 from station.domain import SEGMENTS
 from station.register_windows import COMMAND_START as COMMAND_START
 from station.register_windows import COMMAND_WORDS as COMMAND_WORDS
@@ -111,8 +110,6 @@ ERROR_NOT_JUDGED = 0x1000
 """ERROR_CODE is this and REASON when a part could not be judged."""
 ALL_SEGMENTS = (1 << SEGMENTS) - 1
 """SEG_NOK_MASK or SEG_INVALID_MASK with the bits of all segments."""
-REASON_CODES = {reason: code for code, reason in enumerate(Reason, start=1)}
-"""Values of REASON; 0: none."""
 
 
 @dataclass(frozen=True, slots=True)

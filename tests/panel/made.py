@@ -65,12 +65,10 @@ def part(
 ) -> PartEvent:
     """Judged and shown to the PLC, now if `at_s` is not given."""
     made = replace(record(inspection, number, origin), purpose=purpose)
-    nok = tuple(s.nok > 0.5 for s in inspection.scores)
     told = VerdictCode.NONE if purpose is Purpose.TEST else verdict_code(made, trusted)
     return PartEvent(
         at_s=time.monotonic() if at_s is None else at_s,
         record=made,
-        seg_nok=nok,
         novel=False,
         drift=None,
         told=told,

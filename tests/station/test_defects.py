@@ -15,7 +15,7 @@ from station.classify.thresholds import Limit, Thresholds, in_use
 from station.defects import KINDS, DefectKind, Reason, Width, kind_named, kind_of
 from station.domain import SEGMENTS, Ring, SegmentScores
 from station.errors import SettingsError
-from station.plc.registers import MAP_VERSION, REASON_CODES
+from station.plc.registers import MAP_VERSION
 from station.records import from_json, to_json
 from station.settings import LimitSettings
 from station.settings_file import load
@@ -52,8 +52,8 @@ CODES = {
 
 
 def test_the_plc_codes_of_a_map_version_never_change() -> None:
-    assert {str(reason): code for reason, code in REASON_CODES.items()}.items() >= CODES[MAP_VERSION].items()
-    assert len(set(REASON_CODES.values())) == len(Reason)
+    assert {str(reason): reason.code for reason in Reason}.items() >= CODES[MAP_VERSION].items()
+    assert len({reason.code for reason in Reason}) == len(Reason)
 
 
 @pytest.mark.parametrize("line", ['MISSING_WELD = "missing weld", 1', 'MISSING_WELD = "missing weld", 0', 'MISSING_WELD = "missing weld"'])

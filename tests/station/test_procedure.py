@@ -21,7 +21,7 @@ from station.listener import Listener
 from station.plc.codes import ERROR_ABORTED, ERROR_DEADLINE
 from station.plc.line import make_line
 from station.plc.port import Health, LineState, Result, Trigger
-from station.plc.registers import REASON_CODES, VerdictCode
+from station.plc.registers import VerdictCode
 from station.procedure import Procedure
 from station.recipe import Loaded
 from station.settings import ArchiveSettings, PlcSettings
@@ -148,7 +148,7 @@ def test_all_are_judged_recorded_and_shown_alike_but_only_a_trigger_is_answered(
     assert (record.verdict, record.inspection.reason, record.purpose) == (Verdict.NOK, Reason.HOLE, purpose)
     assert (record.serial, record.trigger_id) == (serial, TRIGGER.trigger_id if by_plc else 0)
     assert record.origin is Origin.CAMERA, "of the frame, not of the settings"
-    assert any(event.seg_nok)
+    assert any(event.record.inspection.nok)
     assert event.record_ms > 0
     assert event.told is told
     assert [entry.record for entry in read_records(rig.folder)] == [record]
@@ -202,7 +202,7 @@ def test_a_grab_that_fails_is_a_reason(rig: Rig, fault: Exception, reason: Reaso
     inspection = rig.event.record.inspection
     assert (inspection.verdict, inspection.reason) == (Verdict.ERROR, reason)
     assert inspection.timing.grab_ms is not None
-    assert [result.reason for result in rig.line.published] == [REASON_CODES[reason]]
+    assert [result.reason for result in rig.line.published] == [reason.code]
     assert rig.procedure._camera.there is there
 
 

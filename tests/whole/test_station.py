@@ -26,7 +26,7 @@ from station.errors import ModelError, RecordError
 from station.events import Event, PartEvent
 from station.listener import Listener
 from station.plc.line import ModbusLine, make_line
-from station.plc.registers import REASON_CODES, CommandCode, Flags, VerdictCode
+from station.plc.registers import CommandCode, Flags, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.recipe import prepare
 from station.requests import Request, TestPicture
@@ -67,8 +67,12 @@ class Station:
 
         return asyncio.run(drive())
 
-    def part_events(self) -> list[PartEvent]:
-        return [e for e in self.events if isinstance(e, PartEvent)]
+    def part_events(self, count: int) -> list[PartEvent]:
+        """The first events of parts; each follows the answer to the PLC, so they are waited for."""
+        until = time.monotonic() + 60
+        while len(found := [e for e in self.events if isinstance(e, PartEvent)]) < count and time.monotonic() < until:
+            time.sleep(0.02)
+        return found
 
 
 @pytest.fixture
@@ -148,7 +152,7 @@ def test_drifting_pictures_are_told_to_plc_and_window_and_still_judged(
 ) -> None:
     answers = station.run([frames[label_with("OK")["frame"]]] * 3)
     assert [a.verdict for a in answers] == [VerdictCode.OK] * 3
-    drifts = [e.drift for e in station.part_events()]
+    drifts = [e.drift for e in station.part_events(3)]
     alarms = [d is not None and d.alarm for d in drifts]
     assert alarms == [i + 1 == parts_until_alarm for i in range(3)], drifts
     assert [Flags.DRIFT in a.flags for a in answers] == alarms
@@ -186,10 +190,7 @@ def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(s
 def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(station: Station, frames: dict[str, Image]) -> None:
     (before,) = station.run([frames[label_with("OK")["frame"]]])
     station.asked.append(TestPicture(time.time()))
-    until = time.monotonic() + 20
-    while len(station.part_events()) < 2 and time.monotonic() < until:
-        time.sleep(0.05)
-    event = station.part_events()[-1]
+    event = station.part_events(2)[-1]
     assert (event.record.purpose, event.record.verdict, event.told) == (Purpose.TEST, Verdict.OK, VerdictCode.NONE)
 
     async def look() -> dict[str, object]:
@@ -240,7 +241,7 @@ def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(s
         (True, "NOK"),
         (False, "OK"),
     ]
-    assert [e for e in station.events if isinstance(e, PartEvent)][-1].record.verdict is Verdict.OK
+    assert station.part_events(6)[-1].record.verdict is Verdict.OK
 
 
 def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
@@ -268,7 +269,7 @@ def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(station: Stati
     answers = station.run([None, good[:1000, :2000], black, good])
     assert [a.verdict for a in answers] == [VerdictCode.ERROR] * 3 + [VerdictCode.OK]
     reasons = [Reason.INCOMPLETE_FRAME, Reason.WRONG_SIZE, Reason.NO_WELD_FOUND]
-    assert [a.reason for a in answers[:3]] == [REASON_CODES[r] for r in reasons]
+    assert [a.reason for a in answers[:3]] == [r.code for r in reasons]
     assert all(a.handshake_complete for a in answers)
     assert [r.verdict for e in read_records(station.folder) if (r := e.record) is not None] == [Verdict.ERROR] * 3 + [Verdict.OK]
 
@@ -282,7 +283,7 @@ def test_a_record_that_cannot_be_written_is_error(
 
     monkeypatch.setattr(Archive, "commit", fails)
     (answer,) = station.run([frames[label_with("OK")["frame"]]])
-    assert (answer.verdict, answer.reason) == (VerdictCode.ERROR, REASON_CODES[Reason.RECORD_FAILED])
+    assert (answer.verdict, answer.reason) == (VerdictCode.ERROR, Reason.RECORD_FAILED.code)
     assert not answer.accepted
 
 
@@ -298,7 +299,7 @@ def test_a_camera_fault_that_nobody_foresaw_costs_one_part_and_leaves_a_record(
 
     monkeypatch.setattr(PylonCamera, "grab", fails_once)
     answers = station.run([good, good])
-    assert [(a.verdict, a.reason) for a in answers] == [(VerdictCode.ERROR, REASON_CODES[Reason.INTERNAL]), (VerdictCode.OK, 0)]
+    assert [(a.verdict, a.reason) for a in answers] == [(VerdictCode.ERROR, Reason.INTERNAL.code), (VerdictCode.OK, 0)]
     assert [r.inspection.reason for e in read_records(station.folder) if (r := e.record) is not None] == [Reason.INTERNAL, None]
 
 

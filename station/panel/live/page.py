@@ -142,7 +142,7 @@ class LivePage(Page):
         self.facts.set(part=record.inspection_id, serial=record.serial or "–", picture=picture, cycle=cycle)
         counts = [0] * SEGMENTS
         for part in self._session.parts:
-            for index, nok in enumerate(part.seg_nok if part.record.purpose is Purpose.PART else ()):
+            for index, nok in enumerate(part.record.inspection.nok if part.record.purpose is Purpose.PART else ()):
                 counts[index] += nok
         self.clock.show_counts(tuple(counts))
         if self._angles.currentWidget() is self.scores:
@@ -164,7 +164,9 @@ class LivePage(Page):
             if shown != self._nok_shown:
                 self._nok_shown = shown
                 self._nok_text.setText(_caption(part))
-                self._nok_strip.show_strip(None if preview is None else strip_image(preview), nok_scores(part.record), part.seg_nok)
+                self._nok_strip.show_strip(
+                    None if preview is None else strip_image(preview), nok_scores(part.record), part.record.inspection.nok
+                )
 
     def _show_picture(self) -> None:
         """The last part's own picture; else, darkened, the one before, and said so."""
@@ -176,12 +178,12 @@ class LivePage(Page):
             self._held = self.hold.isChecked()
             held = "  ·  " + translate("live", "HELD") if self._held else ""
             self.weld.show_weld(drawn(preview, last), caption=_caption(last) + held)
-            self.strip.show_strip(strip_image(preview), nok_scores(last.record), last.seg_nok)
+            self.strip.show_strip(strip_image(preview), nok_scores(last.record), last.record.inspection.nok)
         else:
             before = "" if preview is None else f"\n({preview.inspection_id})"
             note = translate("live", "no picture of this part") + before
             self.weld.show_weld(None if preview is None else drawn(preview, None), note)
-            self.strip.show_strip(None, nok_scores(last.record), last.seg_nok)
+            self.strip.show_strip(None, nok_scores(last.record), last.record.inspection.nok)
 
     def age(self) -> None:
         """Lamps fade with time."""
@@ -223,7 +225,7 @@ class LivePage(Page):
         seen = [p for p in self._session.parts if p.record.purpose is Purpose.PART and p.record.inspection.scores]
         scores = [p.record.inspection.scores[segment].nok for p in seen]
         parts, name = translate("live", "parts"), translate("live", "segment")
-        self.scores.show_scores(scores, [p.seg_nok[segment] for p in seen], f"{name} {segment + 1} · {len(seen)} {parts}")
+        self.scores.show_scores(scores, [p.record.inspection.nok[segment] for p in seen], f"{name} {segment + 1} · {len(seen)} {parts}")
         self._angles.setCurrentWidget(self.scores)
 
     def _open_pinned(self) -> None:
