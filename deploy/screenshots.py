@@ -21,12 +21,14 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
 from deploy.demo import free_ports, running, shipped_parts, station_toml
-from station.archive.review import Opinion, give
+from station.accounts import log_in, save_user
+from station.archive.review import Opinion
+from station.archive.review_writer import give
 from station.panel.app import open_window
 from station.panel.window import Window
 from station.plc.simulated.line import SimulatedLine
 from station.requests import Service
-from station.users import Level, User, log_in, save_user
+from station.users import Level, User
 from synth.feed import Feed
 
 PARTS = 12

@@ -6,7 +6,8 @@ import threading
 from collections.abc import Collection
 from pathlib import Path
 
-from station.archive.journal import Kind, append, entries
+from station.archive.journal import Kind, entries
+from station.archive.journal_writer import append
 from station.errors import RecordError
 from station.plc.alarms import TEXTS, Alarm
 

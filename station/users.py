@@ -1,23 +1,15 @@
-"""Who may do what at the station: names, levels and PINs, kept in the journal. A deterrent on a local machine, not a fortress."""
+"""Who may do what at the station: names and levels, kept in the journal; read here, `accounts` alone changes them."""
 
-import hashlib
-import hmac
 import json
-import secrets
 from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
 from enum import IntEnum
 from pathlib import Path
 
-from station.archive.journal import Entry, Kind, append, entries
-from station.errors import LoginError
-
-TRIES, LOCKED_S = 5, 60.0
-MIN_DIGITS, MAX_DIGITS = 4, 12
+from station.archive.journal import Kind, entries
 
 
 class Level(IntEnum):
-    """Each may do what the ones before may."""
+    """Rank of a user; each level may do what the ones before may."""
 
     OPERATOR = 1
     SETTER = 2
@@ -37,78 +29,23 @@ class User:
 
 
 @dataclass(frozen=True, slots=True)
-class _Kept:
+class Kept:
+    """What the journal keeps of a user: the level, and a salted hash of the PIN."""
+
     level: Level
     salt: str
     hash: str
 
 
 def users(folder: Path) -> list[User]:
-    """All who may log in. Raises RecordError."""
-    return [User(name, kept.level) for name, kept in sorted(_kept(folder).items())]
+    """Return all who may log in, by name. Raises RecordError."""
+    return [User(name, kept.level) for name, kept in sorted(kept_users(folder).items())]
 
 
-def save_user(folder: Path, by: str, name: str, level: Level, pin: str) -> User:
-    """Add a user, or give a known one another level and PIN. Raises LoginError naming what is wrong, RecordError."""
-    name = name.strip()
-    if not 1 <= len(name) <= 40 or not name.isprintable():
-        raise LoginError("a name of 1 to 40 characters is needed")
-    if not (pin.isascii() and pin.isdigit() and MIN_DIGITS <= len(pin) <= MAX_DIGITS):
-        raise LoginError(f"a PIN of {MIN_DIGITS} to {MAX_DIGITS} digits is needed")
-    kept = _kept(folder)
-    if level is not Level.ADMIN and not any(k.level is Level.ADMIN for n, k in kept.items() if n != name):
-        raise LoginError("at least one administrator is needed")
-    salt = secrets.token_hex(16)
-    after = json.dumps({"level": int(level), "salt": salt, "hash": _hash(pin, salt)})
-    append(folder, Kind.USER, by, name, _level_of(kept, name), after)
-    return User(name, level)
-
-
-def remove_user(folder: Path, by: str, name: str) -> None:
-    """Raises LoginError if it is the last administrator, RecordError."""
-    kept = _kept(folder)
-    if name not in kept:
-        raise LoginError(f"there is no user {name}")
-    if not any(k.level is Level.ADMIN for n, k in kept.items() if n != name):
-        raise LoginError("at least one administrator is needed")
-    append(folder, Kind.USER, by, name, _level_of(kept, name), "")
-
-
-def log_in(folder: Path, name: str, pin: str) -> User:
-    """Raises LoginError if the PIN is wrong, or was five times within the last minute; RecordError."""
-    tries = [e for e in entries(folder, (Kind.LOGIN, Kind.LOGIN_FAILED), name, limit=TRIES) if _age(e) < timedelta(seconds=LOCKED_S)]
-    if len(tries) == TRIES and all(e.kind is Kind.LOGIN_FAILED for e in tries):
-        left_s = LOCKED_S - _age(tries[0]).total_seconds()
-        raise LoginError(f"{name} is locked for {left_s:.0f} s more after {TRIES} wrong PINs", locked_s=left_s)
-    kept = _kept(folder).get(name)
-    if kept is None or not hmac.compare_digest(_hash(pin, kept.salt), kept.hash):
-        append(folder, Kind.LOGIN_FAILED, name, name)
-        raise LoginError("unknown name or wrong PIN")
-    append(folder, Kind.LOGIN, name, name)
-    return User(name, kept.level)
-
-
-def log_out(folder: Path, user: User, why: str) -> None:
-    """Raises RecordError."""
-    append(folder, Kind.LOGOUT, user.name, user.name, reason=why)
-
-
-def _kept(folder: Path) -> dict[str, _Kept]:
-    """What the newest entry of each name says."""
+def kept_users(folder: Path) -> dict[str, Kept]:
+    """Return what the newest entry of each name says. Raises RecordError."""
     last: dict[str, str] = {}
     for entry in entries(folder, (Kind.USER,), newest_first=False):
         last[entry.subject] = entry.after
     found = {name: json.loads(after) for name, after in last.items() if after}
-    return {name: _Kept(Level(k["level"]), k["salt"], k["hash"]) for name, k in found.items()}
-
-
-def _level_of(kept: dict[str, _Kept], name: str) -> str:
-    return kept[name].level.name.lower() if name in kept else ""
-
-
-def _age(entry: Entry) -> timedelta:
-    return datetime.now(UTC) - datetime.fromisoformat(entry.at)
-
-
-def _hash(pin: str, salt: str) -> str:
-    return hashlib.scrypt(pin.encode(), salt=bytes.fromhex(salt), n=2**14, r=8, p=1).hex()
+    return {name: Kept(Level(k["level"]), k["salt"], k["hash"]) for name, k in found.items()}

@@ -1,4 +1,7 @@
-"""What people and the station did beside the parts: an SQLite file that only grows, each entry chained to the one before by its hash."""
+"""What people and the station did beside the parts: an SQLite file that only grows, each entry chained to the one before by its hash.
+
+Read here; `journal_writer` alone writes.
+"""
 
 import hashlib
 import json
@@ -6,7 +9,6 @@ import sqlite3
 from collections.abc import Collection, Iterator
 from contextlib import closing
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
 
@@ -14,19 +16,8 @@ from station.archive.schema import START, connect_to_read
 from station.errors import RecordError
 
 NAME = "journal.sqlite"
-PATIENCE_S = 2.0
-"""Another process that writes is waited for."""
-SCHEMA = """
-CREATE TABLE IF NOT EXISTS entries (
-    number INTEGER PRIMARY KEY AUTOINCREMENT,
-    at TEXT NOT NULL, kind TEXT NOT NULL, who TEXT NOT NULL, subject TEXT NOT NULL,
-    before TEXT NOT NULL, after TEXT NOT NULL, reason TEXT NOT NULL, chain TEXT NOT NULL
-);
-CREATE INDEX IF NOT EXISTS entries_kind ON entries (kind, subject, number);
-CREATE TRIGGER IF NOT EXISTS entries_stay BEFORE DELETE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END;
-CREATE TRIGGER IF NOT EXISTS entries_same BEFORE UPDATE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END;
-"""
 COLUMNS = ("at", "kind", "who", "subject", "before", "after", "reason")
+"""Columns of an entry that its hash covers, in this order."""
 
 
 class Kind(StrEnum):
@@ -61,26 +52,6 @@ class Entry:
     number: int = 0
 
 
-def append(folder: Path, kind: Kind, who: str, subject: str = "", before: str = "", after: str = "", reason: str = "") -> Entry:
-    """Write an entry durably. Raises RecordError; then what it tells of must not be done."""
-    entry = Entry(datetime.now(UTC).isoformat(timespec="milliseconds"), kind, who, subject, before, after, reason)
-    try:
-        with closing(sqlite3.connect(folder / NAME, timeout=PATIENCE_S, isolation_level=None)) as connection:
-            connection.execute("PRAGMA journal_mode=WAL")
-            connection.execute("PRAGMA synchronous=FULL")
-            connection.executescript(SCHEMA)
-            connection.execute("BEGIN IMMEDIATE")
-            last = connection.execute("SELECT chain FROM entries ORDER BY number DESC LIMIT 1").fetchone()
-            values = [str(getattr(entry, name)) for name in COLUMNS]
-            chain = _link(START if last is None else last[0], values)
-            marks = ", ".join("?" * (len(COLUMNS) + 1))
-            connection.execute(f"INSERT INTO entries ({', '.join(COLUMNS)}, chain) VALUES ({marks})", [*values, chain])
-            connection.execute("COMMIT")
-    except sqlite3.Error as error:
-        raise RecordError(f"{folder / NAME}: cannot be written ({error}); nothing was changed") from None
-    return entry
-
-
 def entries(
     folder: Path, kinds: Collection[Kind] = (), subject: str | None = None, newest_first: bool = True, limit: int | None = None
 ) -> list[Entry]:
@@ -99,7 +70,7 @@ def verify_journal(folder: Path) -> Iterator[tuple[str, str]]:
     """(place, what is wrong) for all that was altered or taken out. Raises RecordError."""
     chain = START
     for row in _rows(folder, f"SELECT number, {', '.join(COLUMNS)}, chain FROM entries ORDER BY number", []):
-        wanted = _link(chain, [row[name] for name in COLUMNS])
+        wanted = link_entry(chain, [row[name] for name in COLUMNS])
         if row["chain"] != wanted:
             yield f"{NAME}, entry {row['number']}", "was changed, or the one before it was taken out"
         chain = row["chain"]
@@ -122,5 +93,6 @@ def _rows(folder: Path, query: str, values: list[str]) -> list[dict[str, str]]:
         raise RecordError(f"{path}: cannot be read ({error})") from None
 
 
-def _link(chain: str, values: list[str]) -> str:
+def link_entry(chain: str, values: list[str]) -> str:
+    """Return the hash that chains an entry's values to the entry before."""
     return hashlib.sha256("\0".join([chain, *values]).encode()).hexdigest()

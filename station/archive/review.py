@@ -1,13 +1,11 @@
 """What people say of verdicts afterwards. The verdict itself is never changed; an opinion counts once two people share it."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 
-from station.archive.journal import Kind, append, entries
+from station.archive.journal import Kind, entries
 from station.defects import Reason
-from station.errors import LoginError
 
 
 class Opinion(StrEnum):
@@ -67,30 +65,6 @@ class Review:
 def possible(verdict: str) -> tuple[Opinion, ...]:
     """Opinions that one can have of a verdict; none of a part that was not judged."""
     return {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}.get(verdict, ())
-
-
-def give(
-    folder: Path,
-    who: str,
-    *,
-    may_second: bool,
-    inspection_id: int,
-    verdict: str,
-    opinion: Opinion,
-    comment: str = "",
-    marks: Mapping[int, Reason] | None = None,
-) -> None:
-    """`may_second`: whether a second person of their level is believed; raises LoginError if it is needed, RecordError.
-
-    `marks`: where a defect was missed. Raises ValueError if one cannot think so of that verdict.
-    """
-    if opinion not in possible(verdict) or (marks and opinion is not Opinion.MISSED):
-        raise ValueError(f"{opinion} cannot be said of {verdict}")
-    before = reviews(folder).get(inspection_id)
-    if not may_second and before is not None and set(before.opinions) - {who}:
-        raise LoginError("the second review needs the level quality")
-    where = ", ".join(f"{number} {kind}" for number, kind in sorted((marks or {}).items()))
-    append(folder, Kind.REVIEW, who, str(inspection_id), verdict, f"{opinion}: {where}" if where else opinion, comment)
 
 
 def reviews(folder: Path) -> dict[int, Review]:

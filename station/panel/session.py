@@ -10,7 +10,9 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
 
-from station.archive.journal import Kind, append
+from station.accounts import log_out
+from station.archive.journal import Kind
+from station.archive.journal_writer import append
 from station.domain import Purpose, Verdict
 from station.errors import LoginError, RecordError, WeldgateError
 from station.events import SETTING_UP, STATUS_LOST_S, LookEvent, PartEvent, Preview, StatusEvent
@@ -20,7 +22,7 @@ from station.plc.registers import Offline, Status
 from station.requests import Reload, Request, ResetCounts, Service, TestPicture
 from station.settings import Settings
 from station.settings_file import load
-from station.users import Level, User, log_out
+from station.users import Level, User
 
 FILM = 300
 """Parts at hand."""

@@ -13,6 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from deploy.demo import free_ports, running, shipped_parts, station_toml
 from station import adjustments
+from station.accounts import save_user
 from station.archive.journal import Kind, entries
 from station.archive.review import Opinion, State, reviews
 from station.defects import Reason
@@ -26,7 +27,7 @@ from station.panel.window import HEADER_PX, NAV_PX, Window
 from station.plc.alarms import Alarm
 from station.plc.registers import VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
-from station.users import Level, save_user
+from station.users import Level
 from synth.feed import Feed
 
 LEFT = Qt.MouseButton.LeftButton

@@ -10,7 +10,8 @@ from pytestqt.qtbot import QtBot
 
 from station import adjustments
 from station.alarmlog import AlarmLog
-from station.archive.journal import Entry, Kind, append, entries
+from station.archive.journal import Entry, Kind, entries
+from station.archive.journal_writer import append
 from station.archive.writer import Archive
 from station.domain import Frame, Image, Origin
 from station.errors import LoginError, SettingsError

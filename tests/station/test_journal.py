@@ -8,12 +8,14 @@ from pathlib import Path
 
 import pytest
 
-import station.users
+import station.accounts
 from station.__main__ import main
-from station.archive.journal import NAME, Kind, append, entries, verify_journal
+from station.accounts import log_in, log_out, remove_user, save_user
+from station.archive.journal import NAME, Kind, entries, verify_journal
+from station.archive.journal_writer import append
 from station.archive.schema import open_index
 from station.errors import LoginError, RecordError
-from station.users import Level, User, log_in, log_out, remove_user, save_user, users
+from station.users import Level, User, users
 
 
 def test_entries_are_found_by_kind_and_subject(tmp_path: Path) -> None:
@@ -110,5 +112,5 @@ def test_five_wrong_pins_lock_for_a_minute_and_are_logged(folder: Path, monkeypa
         def now(cls, tz: object = None) -> datetime:  # type: ignore[override]
             return datetime.now(UTC) + timedelta(seconds=61)
 
-    monkeypatch.setattr(station.users, "datetime", Later)
+    monkeypatch.setattr(station.accounts, "datetime", Later)
     assert log_in(folder, "Bob", "56789").level is Level.SETTER

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from station.archive.export import export
 from station.archive.reader import read_records
-from station.archive.review import Opinion, Review, State, give, possible, reviews
+from station.archive.review import Opinion, Review, State, possible, reviews
+from station.archive.review_writer import give
 from station.archive.room import Room
 from station.archive.statistics import shift_of, summarise
 from station.archive.whatif import what_if

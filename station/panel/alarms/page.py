@@ -5,7 +5,8 @@ from datetime import datetime
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
-from station.archive.journal import Kind, append, entries
+from station.archive.journal import Kind, entries
+from station.archive.journal_writer import append
 from station.errors import RecordError
 from station.panel.card import Table, label, titled
 from station.panel.page import Page

@@ -9,7 +9,8 @@ from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QV
 
 from station.archive.export import export
 from station.archive.reader import Listed, Row, Wanted, find, read_records
-from station.archive.review import Opinion, Review, State, give, possible, reviews
+from station.archive.review import Opinion, Review, State, possible, reviews
+from station.archive.review_writer import give
 from station.domain import Verdict
 from station.durable import replacing
 from station.errors import RecordError, WeldgateError

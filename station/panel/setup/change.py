@@ -6,7 +6,8 @@ What cannot be used is taken back, in file and journal: at its next start the en
 from collections.abc import Mapping
 
 from station import adjustments
-from station.archive.journal import Kind, append
+from station.archive.journal import Kind
+from station.archive.journal_writer import append
 from station.errors import SettingsError
 from station.panel.session import Session
 from station.settings_file import load

@@ -4,12 +4,13 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFormLayout, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
+from station.accounts import log_in, save_user
 from station.errors import LoginError, RecordError
 from station.panel.card import Choice, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
-from station.users import Level, log_in, save_user, users
+from station.users import Level, users
 
 
 class LoginPage(Page):

@@ -4,12 +4,13 @@ from collections.abc import Callable
 
 from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
+from station.accounts import remove_user, save_user
 from station.errors import LoginError, RecordError
 from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
-from station.users import Level, remove_user, save_user, users
+from station.users import Level, users
 
 
 class PeoplePage(Page):
