@@ -21,14 +21,14 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
 from deploy.demo import free_ports, running, shipped_parts, station_toml
-from station.accounts import log_in, save_user
+from station.accounts import save_user
 from station.archive.review import Opinion
 from station.archive.review_writer import give
 from station.panel.app import open_window
 from station.panel.window import Window
 from station.plc.simulated.line import SimulatedLine
-from station.requests import Service
-from station.users import Level, User
+from station.requests import HoldService
+from station.users import Level
 from synth.feed import Feed
 
 PARTS = 12
@@ -63,7 +63,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         window = open_window(settings)
         window.resize(width, height)
         window.show()
-        user = _people(window)
+        _people(window)
         line = Thread(target=drive)
         line.start()
         _wait(line.is_alive, still=True)
@@ -74,7 +74,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 window.speak(language)
                 for view, page, tab in VIEWS:
                     if view in arguments.views:
-                        _show(window, view, page, tab, user)
+                        _show(window, view, page, tab)
                         _save(window, arguments.out / f"{view}-{language}-{theme}.png")
         window.close()
     print(arguments.out)
@@ -112,8 +112,8 @@ def _station(folder: Path) -> Iterator[tuple[Path, Callable[[], None]]]:
         yield settings, lambda: asyncio.run(parts())
 
 
-def _people(window: Window) -> User:
-    folder = window.session.folder
+def _people(window: Window) -> None:
+    folder = window.session.received.folder
     _wait(lambda: folder.is_dir())
     for name, level, pin in (
         ("Ada Admin", Level.ADMIN, "1234"),
@@ -121,11 +121,10 @@ def _people(window: Window) -> User:
         ("Sam Setter", Level.SETTER, "3456"),
     ):
         save_user(folder, "Ada Admin", name, level, pin)
-    return log_in(folder, "Ada Admin", "1234")
 
 
 def _reviews(window: Window) -> None:
-    folder, nok = window.session.folder, [part.record for part in window.session.parts if part.record.verdict == "NOK"]
+    folder, nok = window.session.received.folder, [part.record for part in window.session.received.parts if part.record.verdict == "NOK"]
     for number in [record.inspection_id for record in nok[-2:]]:
         give(
             folder,
@@ -139,12 +138,13 @@ def _reviews(window: Window) -> None:
         give(folder, "Ada Admin", may_second=True, inspection_id=number, verdict="NOK", opinion=Opinion.RIGHT)
 
 
-def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:
+def _show(window: Window, view: str, page: int, tab: int) -> None:
     """Bring a page to where it has something to show."""
     window.go(page)
     session = window.session
-    if view.startswith("setup") and session.user is None and view != "setup-login":
-        session.log_in(user)
+    if view.startswith("setup") and session.account.user is None and view != "setup-login":
+        session.account.log_in("Ada Admin", "1234", lambda _: None)
+        _wait(lambda: session.account.user is not None)
     shown = window.page
     if page == 5:
         shown.tabs.setCurrentIndex(tab)  # type: ignore[attr-defined]
@@ -160,7 +160,7 @@ def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:
     if view == "statistics":
         _wait(lambda: shown.summary is not None)  # type: ignore[attr-defined]
     if view == "setup-camera":
-        session.serve(Service(0.0, user.name, look=True))
+        session.service.hold(HoldService(look=True))
         _wait(lambda: shown.camera.weld.drawn is not None)  # type: ignore[attr-defined]
     if view == "setup-recipe":
         recipe = shown.recipe  # type: ignore[attr-defined]
@@ -170,8 +170,8 @@ def _show(window: Window, view: str, page: int, tab: int, user: User) -> None:
         _wait(lambda: bool(recipe.said.text()))
     _pause(0.6)
     if view == "setup-camera":
-        session.end_service()
-        _wait(lambda: session.status is not None and not session.status.service)
+        session.service.end()
+        _wait(lambda: session.received.status is not None and not session.received.status.service)
 
 
 def _save(window: Window, path: Path) -> None:

@@ -89,7 +89,7 @@ def soak(folder: Path, parts: int) -> list[Level]:
             if number % 10 == 0:
                 _live(30)
             if number % (parts // ROUNDS) == 0:
-                window.speak("de" if window.session.parts and number // (parts // ROUNDS) % 2 else "en")
+                window.speak("de" if window.session.received.parts and number // (parts // ROUNDS) % 2 else "en")
                 for index in range(len(PAGES)):
                     window.go(index)
                 _until_heard(window, number)
@@ -149,7 +149,7 @@ def _live(milliseconds: int) -> None:
 
 def _until_heard(window: Window, number: int) -> None:
     for _ in range(200):
-        last = window.session.last
+        last = window.session.received.last
         if last is not None and last.record.inspection_id == number:
             return
         _live(20)

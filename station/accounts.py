@@ -17,7 +17,7 @@ MIN_DIGITS, MAX_DIGITS = 4, 12
 
 
 def save_user(folder: Path, by: str, name: str, level: Level, pin: str) -> User:
-    """Add a user, or give a known one another level and PIN. Raises LoginError naming what is wrong, RecordError."""
+    """Add a user, or give a known one another level and PIN. Raises LoginError saying why not, RecordError."""
     name = name.strip()
     if not 1 <= len(name) <= 40 or not name.isprintable():
         raise LoginError("a name of 1 to 40 characters is needed")
@@ -43,11 +43,13 @@ def remove_user(folder: Path, by: str, name: str) -> None:
 
 
 def log_in(folder: Path, name: str, pin: str) -> User:
-    """Check a PIN. Raises LoginError if it is wrong, or was five times within the last minute; RecordError."""
-    tries = [e for e in entries(folder, (Kind.LOGIN, Kind.LOGIN_FAILED), name, limit=TRIES) if _age(e) < timedelta(seconds=LOCKED_S)]
+    """Check a PIN. Raises LoginError if it is wrong, or was five times in the last minute; RecordError."""
+    last = entries(folder, (Kind.LOGIN, Kind.LOGIN_FAILED), name, limit=TRIES)
+    tries = [e for e in last if _age(e) < timedelta(seconds=LOCKED_S)]
     if len(tries) == TRIES and all(e.kind is Kind.LOGIN_FAILED for e in tries):
         left_s = LOCKED_S - _age(tries[0]).total_seconds()
-        raise LoginError(f"{name} is locked for {left_s:.0f} s more after {TRIES} wrong PINs", locked_s=left_s)
+        why = f"{name} is locked for {left_s:.0f} s more after {TRIES} wrong PINs"
+        raise LoginError(why, locked_s=left_s)
     kept = kept_users(folder).get(name)
     if kept is None or not hmac.compare_digest(_hash(pin, kept.salt), kept.hash):
         append(folder, Kind.LOGIN_FAILED, name, name)

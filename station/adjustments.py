@@ -1,14 +1,14 @@
-"""What was changed at the station: a small JSON file beside the settings file, laid over it when it is read."""
+"""What was changed at the station: a small JSON file next to the settings file, laid over it when it is read.
+
+Read here; `settings_change` alone writes it.
+"""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from station.durable import sync_folder, write_whole
 from station.errors import SettingsError
-from station.lock import hold
 from station.renamed_settings import with_new_names
 from station.settings import merged
 
@@ -64,9 +64,8 @@ def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
             yield key, value
 
 
-def laid_over(raw: dict[str, Any], settings: Path) -> dict[str, Any]:
-    """The settings as read, with the changes in their places. Raises SettingsError."""
-    changes = read(settings)
+def laid_over(raw: dict[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings as read, with the changes in their places."""
     answer = dict(raw)
     if changes.get("camera"):
         answer["camera"] = {**raw.get("camera", {}), **changes["camera"]}
@@ -77,22 +76,6 @@ def laid_over(raw: dict[str, Any], settings: Path) -> dict[str, Any]:
             recipe[section] = merged(recipe.get(section, {}), values)
         answer["recipes"] = {**recipes, number: recipe}
     return answer
-
-
-@contextmanager
-def editing(settings: Path) -> Iterator[None]:
-    """Nobody else changes anything meanwhile. Raises SettingsError if somebody does just now."""
-    path = path_of(settings).with_suffix(".lock")
-    try:
-        lock = hold(path)
-    except BlockingIOError:
-        raise SettingsError("another window saves just now; save again") from None
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None
-    try:
-        yield
-    finally:
-        lock.release()
 
 
 def at(changes: Mapping[str, Any], place: Sequence[str]) -> object:
@@ -108,13 +91,3 @@ def put(changes: Mapping[str, Any], place: Sequence[str], value: object) -> dict
     name, rest = place[0], place[1:]
     inner = put(changes.get(name, {}), rest, value) if rest else value
     return {k: v for k, v in changes.items() if k != name} | ({} if inner is None or (inner == {} and rest) else {name: inner})
-
-
-def write(settings: Path, changes: dict[str, Any]) -> None:
-    """Replace all changes at once, durably. Raises SettingsError."""
-    path = path_of(settings)
-    try:
-        write_whole(path, json.dumps(changes, indent=1, sort_keys=True).encode(), durable=True)
-        sync_folder(path.parent)
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed") from None

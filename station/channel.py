@@ -1,10 +1,9 @@
 """Local channel between engine and panels over ZeroMQ; the only file that imports it.
 
-Events are queued; previews ride a latest-only slot; requests go the other way. The engine never waits for a panel, and a panel may
-come and go.
+Events are queued; previews ride a latest-only slot; requests go the other way, each is answered. The engine
+never waits for a panel, and a panel may come and go.
 """
 
-import time
 from contextlib import suppress
 from typing import Annotated
 
@@ -13,16 +12,19 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from station.errors import LineError
 from station.events import Event, Preview
-from station.requests import Request
+from station.requests import Answer, Message
 from station.settings import ChannelSettings
 
 _EVENTS: TypeAdapter[Event] = TypeAdapter(Annotated[Event, Field(discriminator="type")])
 _PREVIEW = TypeAdapter(Preview)
-_REQUEST: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="type")])
+_MESSAGE = TypeAdapter(Message)
+_ANSWER = TypeAdapter(Answer)
 MAX_REQUESTS = 100
-"""Looked at in one go."""
-FRESH_S = 2.0
-"""An older request is not carried out: whoever asked has seen that nothing came."""
+"""Requests that are looked at in one go."""
+MAX_BYTES = 65_536
+"""Longest request; a sender of a longer one is disconnected."""
+LINGER_MS = 200
+"""Time that the last request of a window has to leave when it is closed."""
 
 
 def _address(settings: ChannelSettings, port: int) -> str:
@@ -121,53 +123,72 @@ class Subscriber:
         self._context.destroy(linger=0)
 
 
-class Inbox:
-    """Where the engine finds what panels ask for. Use from one thread."""
+class RequestServer:
+    """The engine's end for requests: each is answered to the window that sent it. Use from one thread."""
 
     def __init__(self, settings: ChannelSettings) -> None:
         """Bind. Raises LineError if the port is taken."""
         self._context = zmq.Context()
-        self._socket = self._context.socket(zmq.PULL)
-        self._socket.setsockopt(zmq.IPV6, 1)
+        self._socket = self._context.socket(zmq.ROUTER)
+        for option, value in ((zmq.MAXMSGSIZE, MAX_BYTES), (zmq.LINGER, 0), (zmq.IPV6, 1)):
+            self._socket.setsockopt(option, value)
         _bind(self._context, self._socket, _address(settings, settings.requests_port), "requests_port")
 
-    def requests(self) -> list[Request]:
-        """What was asked for just now, of each kind the last."""
-        found: dict[str, Request] = {}
+    def received(self, wait_s: float) -> list[tuple[bytes, Message]]:
+        """Return what came, each with its sender; waits for the first. What is not understood is dropped."""
+        found: list[tuple[bytes, Message]] = []
+        if not self._socket.poll(int(wait_s * 1000)):
+            return found
         for _ in range(MAX_REQUESTS):
             try:
-                raw = self._socket.recv(zmq.NOBLOCK)
+                frames = self._socket.recv_multipart(zmq.NOBLOCK)
             except zmq.Again:
                 break
             with suppress(ValidationError):
-                request = _REQUEST.validate_json(raw)
-                if abs(time.time() - request.asked_s) <= FRESH_S:
-                    found[request.type] = request
-        return list(found.values())
+                if len(frames) == 2:
+                    found.append((frames[0], _MESSAGE.validate_json(frames[1])))
+        return found
+
+    def answer(self, sender: bytes, answer: Answer) -> None:
+        """Answer a window; dropped if it is gone or does not read."""
+        with suppress(zmq.ZMQError):
+            self._socket.send_multipart((sender, _ANSWER.dump_json(answer)), zmq.NOBLOCK)
 
     def close(self) -> None:
         """Close the socket."""
         self._context.destroy(linger=0)
 
 
-class Outbox:
-    """Where a panel asks. Nothing is kept for an engine that is not there. Use from one thread."""
+class RequestClient:
+    """A window's end for requests. Nothing is kept for an engine that is not there. Use from one thread."""
 
     def __init__(self, settings: ChannelSettings) -> None:
+        """Connect, and reconnect whenever the engine is back."""
         self._context = zmq.Context()
-        self._socket = self._context.socket(zmq.PUSH)
-        for option, value in ((zmq.IMMEDIATE, 1), (zmq.SNDHWM, 2), (zmq.LINGER, 0), (zmq.IPV6, 1), (zmq.RECONNECT_IVL_MAX, 1000)):
+        self._socket = self._context.socket(zmq.DEALER)
+        for option, value in ((zmq.IMMEDIATE, 1), (zmq.SNDHWM, 100), (zmq.IPV6, 1), (zmq.RECONNECT_IVL_MAX, 1000)):
             self._socket.setsockopt(option, value)
         self._socket.connect(_address(settings, settings.requests_port))
 
-    def ask(self, request: Request) -> bool:
-        """False if no engine is there."""
+    def send(self, message: Message) -> bool:
+        """Send a request. Return False if there is no connection to the engine."""
         try:
-            self._socket.send(_REQUEST.dump_json(request), zmq.NOBLOCK)
+            self._socket.send(_MESSAGE.dump_json(message), zmq.NOBLOCK)
         except zmq.Again:
             return False
         return True
 
+    def answers(self) -> list[Answer]:
+        """Return the answers that have come."""
+        found: list[Answer] = []
+        while True:
+            try:
+                raw = self._socket.recv(zmq.NOBLOCK)
+            except zmq.Again:
+                return found
+            with suppress(ValidationError):
+                found.append(_ANSWER.validate_json(raw))
+
     def close(self) -> None:
-        """Close the socket."""
-        self._context.destroy(linger=0)
+        """Close the socket; what was sent last still leaves."""
+        self._context.destroy(linger=LINGER_MS)

@@ -12,13 +12,14 @@ from station.condition import Seen, health
 from station.domain import Origin
 from station.errors import LineError, WeldgateError
 from station.listener import Listener
+from station.orders import Reload, Service, UseSettings
 from station.plc.port import Command, Line, Trigger
 from station.plc.registers import Offline
 from station.procedure import Procedure
 from station.recipe import Loaded
 from station.released import Released
-from station.requests import Reload, ResetCounts, Service
 from station.service import Attention, drained, look
+from station.settings_use import RELOAD_REFUSED, use_settings
 from station.status_report import StatusReport
 from station.watch import Watch
 
@@ -98,20 +99,21 @@ class Cycle:
             self._guarded(partial(self._procedure.unanswered, trigger, self._loaded), failed)
 
     def _hear(self) -> None:
-        requests = self._listener.requests()
-        self._attention.hear(requests)
-        for request in requests:
-            if isinstance(request, ResetCounts):
-                self._line.reset_counts()
-                log.info("counters set back by %s", request.who)
+        for order in self._attention.hear(self._listener.orders()):
+            self._line.reset_counts()
+            log.info("counters set back by %s", order.who)
 
     def _attend(self) -> bool:
         """What people ask for, once no part is in work. Whether there was anything to do."""
         status = self._line.state().status
         task, wanted = self._attention.due(status), self._attention.service.looking
         if isinstance(task, Reload):
-            self._guarded(self._reload, "the settings were not read again")
-            self._reloaded_s = task.asked_s
+            self._guarded(partial(self._reload, task), "the settings were not read again")
+            task.ticket.answer(RELOAD_REFUSED if self._settings_refused else "")
+        elif isinstance(task, UseSettings):
+            work = partial(use_settings, task, self._released, self._camera, self._loaded.number, self._use)
+            self._guarded(work, "changed settings are not used")
+            self._settings_refused &= bool(task.ticket.refusal)
         elif task is not None:
             inspect = partial(self._procedure.test_image, task.master, self._loaded)
             self._guarded(inspect, "the test picture was not judged")
@@ -125,9 +127,9 @@ class Cycle:
         if preview is not None:
             self._listener.preview(preview)
 
-    def _reload(self) -> None:
+    def _reload(self, task: Reload) -> None:
         """Use the settings as they are now; if they are no good, those before stay in use."""
-        self._settings_refused = True
+        self._settings_refused, self._reloaded_s = True, task.asked_s
         try:
             change = self._released.changed(self._loaded.number)
         except WeldgateError as error:

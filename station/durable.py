@@ -38,6 +38,16 @@ def write_whole(path: Path, data: bytes, *, durable: bool = False) -> None:
             os.fsync(file.fileno())
 
 
+def stage(path: Path, data: bytes) -> Path:
+    """Write durably under a temporary name, ready to be renamed to `path`; return it. Raises OSError."""
+    part = path.with_name(path.name + PART)
+    with part.open("wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    return part
+
+
 def sync_folder(folder: Path) -> None:
     """Make the names in a folder durable. Raises OSError."""
     if os.name != "posix":

@@ -1,17 +1,17 @@
-"""Who hears of what the engine does, and asks things of it; must not block."""
+"""Who hears of what the engine does, and orders things of it; must not block."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from station.events import Event, Preview
-from station.requests import Request
+from station.orders import Order
 
 
 @dataclass(frozen=True, slots=True)
 class Listener:
-    """The engine's side of the channel."""
+    """The cycle's connections to the people at the station."""
 
     event: Callable[[Event], None]
     preview: Callable[[Preview], None]
-    requests: Callable[[], Sequence[Request]] = tuple
-    """What people ask for."""
+    orders: Callable[[], Sequence[Order]] = tuple
+    """Returns what people ask for, once it was allowed."""

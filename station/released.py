@@ -26,13 +26,25 @@ class Released:
         """`again` reads the file. Raises WeldgateError."""
         self._settings, self._again, self._make_camera = settings, again, make_camera
 
+    @property
+    def settings(self) -> Settings:
+        """Settings in use."""
+        return self._settings
+
     def prepare(self, number: int) -> Loaded:
         """A recipe. Raises WeldgateError."""
         return prepare(self._settings, number)
 
     def changed(self, number: int) -> Change:
-        """The file as it is now, with a recipe loaded by it. Raises WeldgateError."""
-        new, camera = self._again(), None
+        """Return the file as it is now, with a recipe loaded by it. Raises WeldgateError."""
+        return self.prepared(self._again(), number)
+
+    def prepared(self, new: Settings, number: int) -> Change:
+        """Return other settings with a recipe loaded by them. Raises WeldgateError if they cannot be used.
+
+        May be called from another thread than `accept`.
+        """
+        camera = None
         if _which(new) != _which(self._settings):
             raise SettingsError("another camera cannot take over while the station runs; start it again")
         known = {1, *self._settings.recipes}
@@ -43,6 +55,10 @@ class Released:
         if new.camera != self._settings.camera:
             camera = self._make_camera(new)
         return Change(new, loaded, camera)
+
+    def camera(self) -> Camera:
+        """Return the camera of the settings in use, not yet open."""
+        return self._make_camera(self._settings)
 
     def accept(self, change: Change) -> None:
         """From now on."""

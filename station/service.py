@@ -10,9 +10,9 @@ from station.camera.reconnecting import ReconnectingCamera
 from station.errors import LocateError, ModelError
 from station.events import SETTING_UP, LookEvent, Preview
 from station.inspection import Inspector
+from station.orders import Order, Reload, ResetCounts, Service, TestPicture, UseSettings
 from station.plc.registers import Status
 from station.preview import make_preview
-from station.requests import Reload, Request, Service, TestPicture
 from station.vision.quality import measure
 from station.vision.unwrap import unwrap
 
@@ -61,34 +61,40 @@ class ServiceMode:
         return self._said if self._said is not None and self.who and self._said.look else None
 
 
+Task = TestPicture | Reload | UseSettings
+"""Orders that wait for a moment without a part in work."""
+
+
 class Attention:
-    """What people ask for beside the parts: it waits until READY is 0 and no part is in work or unread."""
+    """Orders of people next to parts: they wait until READY is 0 and no part is in work or unread."""
 
     def __init__(self) -> None:
         self.service = ServiceMode()
-        self._tasks: dict[str, TestPicture | Reload] = {}
+        self._tasks: dict[type[Task], Task] = {}
         self._since_s = 0.0
 
-    def hear(self, requests: Sequence[Request]) -> None:
-        """Of each kind the last counts."""
-        for request in requests:
-            if isinstance(request, Service):
-                self.service.heard(request)
-            elif isinstance(request, TestPicture | Reload):
+    def hear(self, orders: Sequence[Order]) -> list[ResetCounts]:
+        """Take in orders, of each kind the last counts; return those that need not wait."""
+        for order in orders:
+            if isinstance(order, Service):
+                self.service.heard(order)
+            elif isinstance(order, TestPicture | Reload | UseSettings):
                 if not self._tasks:
                     self._since_s = time.monotonic()
-                self._tasks[request.type] = request
+                self._tasks[type(order)] = order
+        return [order for order in orders if isinstance(order, ResetCounts)]
 
     @property
     def waiting(self) -> bool:
-        """Whether READY must be 0 for something that was asked for."""
+        """True if READY must be 0 for something that was ordered."""
         return bool(self._tasks)
 
-    def due(self, status: Status) -> TestPicture | Reload | None:
-        """What can be done now, by the bits that the PLC reads; taken once."""
+    def due(self, status: Status) -> Task | None:
+        """Return what can be done now, by the bits that the PLC reads; it is taken once."""
         if not self._tasks or not drained(status) or time.monotonic() - self._since_s < SETTLE_S:
             return None
-        return self._tasks.pop(next(iter(self._tasks)))
+        task = self._tasks.pop(next(iter(self._tasks)))
+        return task if isinstance(task, TestPicture) or task.ticket.take() else None
 
 
 def drained(status: Status) -> bool:

@@ -7,14 +7,18 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from station.adjustments import laid_over, path_of
+from station.adjustments import laid_over, path_of, read
 from station.errors import SettingsError
 from station.renamed_settings import with_new_names
 from station.settings import ReplaySettings, Settings, for_recipe
 
 
-def load(path: Path) -> Settings:
-    """A TOML file with what was changed at the station laid over it. Raises SettingsError naming file, key and what is allowed."""
+def load(path: Path, changes: dict[str, Any] | None = None) -> Settings:
+    """Return a TOML file with what was changed at the station laid over it.
+
+    `changes` replace what was changed at the station, before they are written. Raises SettingsError naming file,
+    key and what is allowed.
+    """
     try:
         with path.open("rb") as file:
             raw = tomllib.load(file)
@@ -24,18 +28,21 @@ def load(path: Path) -> Settings:
         raise SettingsError(f"{path}: cannot be read: {error}") from None
     except tomllib.TOMLDecodeError as error:
         raise SettingsError(f"{path}: not valid TOML: {error}") from None
+    over = read(path) if changes is None else changes
     try:
         raw = with_new_names(raw)
     except SettingsError as error:
         raise SettingsError(f"{path}: {error}") from None
-    raw = laid_over(raw, path)
+    raw = laid_over(raw, over)
     try:
         settings = Settings.model_validate(raw)
         for number in settings.recipes:
             for_recipe(settings, number)
     except ValidationError as error:
-        changed = path_of(path) if laid_over({}, path) else None
-        also = "" if changed is None else f" (with what was changed at the station: {changed.name}; remove it to go back)"
+        if changes is not None:
+            raise SettingsError(_first(error)) from None
+        name = path_of(path).name
+        also = f" (with what was changed at the station: {name}; remove it to go back)" if over else ""
         raise SettingsError(f"{path}{also}: {_first(error)}") from None
     return _anchored(settings, path.resolve().parent)
 

@@ -17,11 +17,14 @@ from station.archive.reader import Wanted, find
 from station.archive.writer import Archive
 from station.camera.port import Camera
 from station.camera.reconnecting import ReconnectingCamera
-from station.channel import Inbox, Publisher
+from station.channel import Publisher, RequestServer
 from station.cycle import Cycle
 from station.domain import Purpose, Verdict
 from station.errors import WeldgateError
+from station.events import Event
 from station.listener import Listener
+from station.operator_requests import OperatorRequests
+from station.orders import OrderQueue
 from station.plc.buslog import BusLog
 from station.plc.line import make_line
 from station.plc.port import Line
@@ -54,9 +57,9 @@ def make_cycle(
     archive: Archive,
     listener: Listener,
     alarm_log: AlarmLog,
-    again: Callable[[], Settings] | None = None,
+    released: Released | None = None,
 ) -> Cycle:
-    """The cycle that the settings describe; `again` reads them again when somebody has changed them."""
+    """Return the cycle that the settings describe; `released`: settings in use, which may change meanwhile."""
     golden = settings.golden
     return Cycle(
         camera=ReconnectingCamera(make_camera(settings), settings.camera.reconnect_s),
@@ -64,7 +67,7 @@ def make_cycle(
         line=line,
         archive=archive,
         loaded=loaded,
-        released=Released(settings, again or (lambda: settings), make_camera),
+        released=released or Released(settings, lambda: settings, make_camera),
         watch=Watch(
             loaded,
             {serial: _master(settings.archive.folder, serial, Verdict(found)) for serial, found in golden.masters.items()},
@@ -111,8 +114,8 @@ def run_engine(path: Path) -> None:
         bus = tried(lambda: stack.enter_context(closing(BusLog(settings.archive.folder, settings.archive.bus_days)))) if archive else None
         if archive:
             stack.enter_context(closing(Housekeeping(settings.archive.folder, settings.archive.keep)))
-        inbox = tried(lambda: stack.enter_context(closing(Inbox(settings.channel))))
-        if problems or loaded is None or publisher is None or archive is None or bus is None or inbox is None:
+        server = tried(lambda: stack.enter_context(closing(RequestServer(settings.channel))))
+        if problems or loaded is None or publisher is None or archive is None or bus is None or server is None:
             raise WeldgateError("; ".join(problems))
         line = make_line(settings.plc, bus)
         stack.callback(line.stop)
@@ -121,6 +124,12 @@ def run_engine(path: Path) -> None:
             log.warning("changed at the station, over %s: %s", path.name, change)
         log.info("station up: model %s, PLC %s on port %d", loaded.provenance.model_version, settings.plc.mode, line.port)
         alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder)))
-        listener = Listener(publisher.send, publisher.show, inbox.requests)
-        cycle = make_cycle(settings, loaded, line, archive, listener, alarm_log, lambda: load(path))
-        cycle.run(stop)
+        released, orders = Released(settings, lambda: load(path), make_camera), OrderQueue()
+        requests = stack.enter_context(closing(OperatorRequests(server, path, released, orders.put)))
+
+        def heard(event: Event) -> None:
+            publisher.send(event)
+            requests.saw(event)
+
+        listener = Listener(heard, publisher.show, orders.take)
+        make_cycle(settings, loaded, line, archive, listener, alarm_log, released).run(stop)

@@ -88,6 +88,8 @@ def _rows(folder: Path, query: str, values: list[str]) -> list[dict[str, str]]:
     try:
         with closing(connect_to_read(path)) as connection:
             connection.row_factory = sqlite3.Row
+            if connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None:
+                return []  # who made it was killed before the first entry
             return [dict(row) for row in connection.execute(query, values)]
     except sqlite3.Error as error:
         raise RecordError(f"{path}: cannot be read ({error})") from None

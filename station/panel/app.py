@@ -8,7 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
-from station.channel import Outbox, Subscriber
+from station.channel import RequestClient, Subscriber
 from station.errors import WeldgateError
 from station.panel import theme, words
 from station.panel.bridge import Bridge
@@ -22,7 +22,7 @@ def open_window(path: Path) -> Window:
     settings = load(path)
     words.use(settings.panel.language)
     theme.use(settings.panel.theme)
-    bridge = Bridge(Subscriber(settings.channel), Outbox(settings.channel))
+    bridge = Bridge(Subscriber(settings.channel), RequestClient(settings.channel))
     return Window(Session(bridge, settings, path))
 
 

@@ -2,9 +2,9 @@
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from station.channel import Outbox, Subscriber
+from station.channel import RequestClient, Subscriber
 from station.events import PartEvent, StatusEvent
-from station.requests import Request
+from station.requests import Message
 
 POLL_MS = 30
 
@@ -20,10 +20,12 @@ class Bridge(QObject):
     """LookEvent"""
     preview = Signal(object)
     """Preview"""
+    answer = Signal(object)
+    """Answer to one request"""
 
-    def __init__(self, subscriber: Subscriber, outbox: Outbox) -> None:
+    def __init__(self, subscriber: Subscriber, client: RequestClient) -> None:
         super().__init__()
-        self._subscriber, self._outbox = subscriber, outbox
+        self._subscriber, self._client = subscriber, client
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._poll)
         self._timer.start(POLL_MS)
@@ -39,16 +41,18 @@ class Bridge(QObject):
                 self.look.emit(event)
         if parts:
             self.parts.emit(parts)
+        for answer in self._client.answers():
+            self.answer.emit(answer)
         preview = self._subscriber.preview()
         if preview is not None:
             self.preview.emit(preview)
 
-    def ask(self, request: Request) -> bool:
-        """False if no engine is there."""
-        return self._outbox.ask(request)
+    def send(self, message: Message) -> bool:
+        """Send a request. Return False if there is no connection to the engine."""
+        return self._client.send(message)
 
     def close(self) -> None:
         """Stop listening."""
         self._timer.stop()
         self._subscriber.close()
-        self._outbox.close()
+        self._client.close()

@@ -11,7 +11,7 @@ from station.users import Level
 def ask_folder(parent: QWidget, session: Session, title: str) -> Path | None:
     """A folder, or None."""
     name = QFileDialog.getExistingDirectory(parent, title, options=QFileDialog.Option.ReadOnly)
-    return Path(name) if name and session.may(Level.OPERATOR) else None
+    return Path(name) if name and session.account.may(Level.OPERATOR) else None
 
 
 def ask_file(parent: QWidget, session: Session, title: str, suggestion: str) -> Path | None:
@@ -23,4 +23,4 @@ def ask_file(parent: QWidget, session: Session, title: str, suggestion: str) -> 
     dialog.selectFile(suggestion)
     chosen = dialog.selectedFiles() if dialog.exec() else []
     dialog.deleteLater()
-    return Path(chosen[0]) if chosen and session.may(Level.OPERATOR) else None
+    return Path(chosen[0]) if chosen and session.account.may(Level.OPERATOR) else None

@@ -85,8 +85,8 @@ class Window(QMainWindow):
         self._pages: dict[int, Page] = {}
         """Those that were looked at."""
         self._build(0)
-        session.status_changed.connect(self._on_status)
-        session.user_changed.connect(self._on_user)
+        session.received.status_changed.connect(self._on_status)
+        session.account.changed.connect(self._on_user)
         session.part_wanted.connect(self._open_part)
         self._ageing = QTimer(self)
         self._ageing.timeout.connect(self._on_status)
@@ -212,12 +212,12 @@ class Window(QMainWindow):
         self._build(chosen)
 
     def _on_status(self) -> None:
-        session, status = self.session, self.session.status
+        session, status = self.session, self.session.received.status
         self._badge.setVisible(status is not None and status.origin is not Origin.CAMERA)
         simulated = status is not None and status.origin is Origin.SIMULATED
         self._badge.setText(translate("window", "SIMULATED CAMERA") if simulated else translate("window", "REPLAY"))
-        lasting = status.alarms if status is not None and session.engine_there else ()
-        if not session.engine_there:
+        lasting = status.alarms if status is not None and session.received.engine_there else ()
+        if not session.received.engine_there:
             text = translate("window", "no word from the engine; it is connected again by itself")
         else:
             text = data(TEXTS[lasting[0]].cause) if lasting else ""
@@ -228,7 +228,7 @@ class Window(QMainWindow):
         self._buttons.button(4).setText(alarms)
 
     def _on_user(self) -> None:
-        user = self.session.user
+        user = self.session.account.user
         self._user.setText(translate("window", "Log in") if user is None else f"{user.name}")
         app = QApplication.instance()
         if app is not None:  # every event of the application passes a filter: only while it matters
@@ -239,7 +239,7 @@ class Window(QMainWindow):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         """Any touch or key keeps who is logged in."""
         if event.type() in (QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.TouchBegin):
-            self.session.touched()
+            self.session.account.touched()
         return super().eventFilter(watched, event)
 
     def _close_pages(self) -> None:

@@ -17,6 +17,7 @@ from station.panel.app import open_window
 from station.panel.window import Window
 from station.settings import ChannelSettings
 from station.settings_file import load
+from tests.desk import Desk
 
 
 @pytest.fixture(autouse=True)
@@ -44,6 +45,14 @@ def path(tmp_path: Path) -> Path:
 @pytest.fixture
 def settings(path: Path) -> ChannelSettings:
     return load(path).channel
+
+
+@pytest.fixture
+def desk(path: Path) -> Iterator[Desk]:
+    """What answers the window, as an engine without a line."""
+    end = Desk(path)
+    yield end
+    end.close()
 
 
 @pytest.fixture

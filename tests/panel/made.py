@@ -1,11 +1,15 @@
-"""Events as an engine sends them."""
+"""Events as an engine sends them, and a person who logs in."""
 
 import time
 from dataclasses import replace
 
+from pytestqt.qtbot import QtBot
+
 from station.answer import verdict_code
 from station.domain import Inspection, Origin, Purpose
 from station.events import PartEvent, StatusEvent
+from station.panel.pending import NO_CONNECTION
+from station.panel.session import Session
 from station.plc.port import Counts
 from station.plc.registers import (
     COMMAND_START,
@@ -20,6 +24,9 @@ from station.plc.registers import (
     unpack_window,
 )
 from station.plc.status_window import decoded
+from station.requests import Answer
+from station.users import Level, User
+from tests.desk import PIN, Desk
 from tests.parts import record
 
 
@@ -75,3 +82,15 @@ def part(
         record_ms=1.0,
         publish_ms=1.0,
     )
+
+
+def log_in(session: Session, desk: Desk, qtbot: QtBot, name: str, level: Level) -> None:
+    """A user of that level, logged in at the window by the engine."""
+    desk.knows(name, level)
+    answers: list[Answer] = []
+    while not answers or answers[-1].refusal == NO_CONNECTION:  # not connected yet
+        count = len(answers)
+        session.account.log_in(name, PIN, answers.append)
+        qtbot.waitUntil(lambda: len(answers) > count, timeout=10_000)  # noqa: B023 - waited for here
+        qtbot.wait(20)
+    assert session.account.user == User(name, level)

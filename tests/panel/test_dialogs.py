@@ -6,10 +6,13 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication, QDialogButtonBox, QFileDialog, QLineEdit, QMessageBox
+from pytestqt.qtbot import QtBot
 
 from station.panel.dialogs import ask_file
 from station.panel.window import Window
-from station.users import Level, User
+from station.users import Level
+from tests.desk import Desk
+from tests.panel.made import log_in
 
 
 def answered(window: Window, typed: Path, over: bool | None, meanwhile: Callable[[], None] = lambda: None) -> Path | None:
@@ -38,8 +41,10 @@ def answered(window: Window, typed: Path, over: bool | None, meanwhile: Callable
 
 
 @pytest.mark.parametrize("name", ["lot", "lot.csv"])
-def test_a_file_has_its_ending_and_goes_over_another_only_if_that_is_said(window: Window, tmp_path: Path, name: str) -> None:
-    window.session.log_in(User("Bob", Level.OPERATOR))
+def test_a_file_has_its_ending_and_goes_over_another_only_if_that_is_said(
+    window: Window, desk: Desk, qtbot: QtBot, tmp_path: Path, name: str
+) -> None:
+    log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)
     wanted = tmp_path / "lot.csv"
     assert answered(window, tmp_path / name, None) == wanted
     wanted.write_text("before")
@@ -47,6 +52,6 @@ def test_a_file_has_its_ending_and_goes_over_another_only_if_that_is_said(window
     assert answered(window, tmp_path / name, True) == wanted
 
 
-def test_nothing_comes_of_a_dialog_whose_user_is_gone(window: Window, tmp_path: Path) -> None:
-    window.session.log_in(User("Bob", Level.OPERATOR))
-    assert answered(window, tmp_path / "lot", None, lambda: window.session.log_out("idle")) is None
+def test_nothing_comes_of_a_dialog_whose_user_is_gone(window: Window, desk: Desk, qtbot: QtBot, tmp_path: Path) -> None:
+    log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)
+    assert answered(window, tmp_path / "lot", None, window.session.account.log_out) is None

@@ -1,43 +1,45 @@
-"""Who may do what in the window, what is noted of it, and that nothing typed or asked by one stays for the next."""
+"""What the window shows of rights and changes: the engine decides, and nothing typed or asked by one stays for the next."""
 
 import time
-from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 from pytestqt.qtbot import QtBot
 
-from station import adjustments
+from station import adjustments, orders
 from station.alarmlog import AlarmLog
 from station.archive.journal import Entry, Kind, entries
 from station.archive.journal_writer import append
 from station.archive.writer import Archive
 from station.domain import Frame, Image, Origin
-from station.errors import LoginError, SettingsError
 from station.panel.alarms.page import AlarmsPage
 from station.panel.line.page import LinePage
+from station.panel.live.page import LivePage
+from station.panel.pending import NO_CONNECTION
 from station.panel.session import Session
-from station.panel.setup.change import change
 from station.panel.setup.page import SetupPage
 from station.panel.setup.recipe import RecipePage
+from station.panel.statistics.page import StatisticsPage
 from station.panel.window import Window
 from station.plc.alarms import Alarm
 from station.plc.registers import Status
 from station.preview import make_preview
 from station.recipe import prepare
 from station.records import Part
-from station.requests import Service
-from station.users import Level, User
-from tests.panel.made import part, status
+from station.requests import Changed, HoldService
+from station.settings_file import load
+from station.users import Level
+from tests.desk import PIN, Desk
+from tests.panel.made import log_in, part, status
 from tests.parts import label_with, nok_inspection, ok_inspection
 
-ADA, BOB, QUENTIN = User("Ada", Level.SETTER), User("Bob", Level.OPERATOR), User("Quentin", Level.QUALITY)
 REASON = "trial of the threshold"
+HOLE = ("recipes", "1", "model", "limits", "hole", "threshold")
 
 
 def told(session: Session, *kinds: Kind) -> list[Entry]:
-    return entries(session.folder, kinds)
+    return entries(session.received.folder, kinds)
 
 
 def recipe_page(window: Window) -> RecipePage:
@@ -47,43 +49,74 @@ def recipe_page(window: Window) -> RecipePage:
     return window.page.recipe
 
 
-def test_who_logs_in_ends_what_the_one_before_was_doing(window: Window) -> None:
-    session = window.session
-    session.log_in(ADA)
-    session.serve(Service(0.0, "Ada", bit=int(Status.OK)))
-    session.log_in(BOB)
-    assert session.service is None
+def hold(session: Session, qtbot: QtBot, request: HoldService) -> None:
+    """Service mode, granted by the engine."""
+    session.service.hold(request)
+    qtbot.waitUntil(lambda: session.service.held == request, timeout=5000)
+
+
+def test_who_logs_in_ends_what_the_one_before_was_doing(window: Window, desk: Desk, qtbot: QtBot) -> None:
+    session, refused = window.session, list[str]()
+    session.service.refused.connect(refused.append)
+    log_in(session, desk, qtbot, "Ada", Level.SETTER)
+    hold(session, qtbot, HoldService(bit=int(Status.OK)))
+    log_in(session, desk, qtbot, "Bob", Level.OPERATOR)
+    assert session.service.held is None
+    qtbot.waitUntil(lambda: desk.given[-1] == orders.Service("Ada", over=True), timeout=5000)
     assert [(e.who, e.kind) for e in told(session, Kind.LOGOUT)] == [("Ada", Kind.LOGOUT)]
-    with pytest.raises(LoginError, match="setter"):
-        session.serve(Service(0.0, "Bob"))
-    assert session.service is None
+    session.service.hold(HoldService())
+    qtbot.waitUntil(lambda: refused == ["a login of the level setter is needed"], timeout=5000)
+    assert session.service.held is None
 
 
-def test_whatever_is_done_by_hand_is_in_the_journal(window: Window) -> None:
+def test_the_engine_ends_a_login_and_the_window_says_so(window: Window, desk: Desk, qtbot: QtBot) -> None:
     session = window.session
-    session.log_in(ADA)
-    session.test_picture("MASTER-1")
-    session.serve(Service(0.0, "Ada"))
-    session.serve(Service(0.0, "Ada", bit=int(Status.READY)))
-    session.reset_counts()
-    session.end_service()
-    assert [(e.who, e.subject, e.before, e.after) for e in reversed(told(session, Kind.SERVICE))] == [
-        ("Ada", "test picture", "", "MASTER-1"),
-        ("Ada", "service mode", "", "begins"),
-        ("Ada", "bit by hand", "–", "READY"),
-        ("Ada", "counters", "", "0"),
-        ("Ada", "service mode", "begins", "over"),
-    ]
-    session.log_out("asked to")
-    for doing in (session.test_picture, session.reset_counts):
-        with pytest.raises(LoginError):
-            doing()
+    log_in(session, desk, qtbot, "Ada", Level.SETTER)
+    hold(session, qtbot, HoldService())
+    desk.knows("Ada", Level.OPERATOR)
+    for token in desk.requests._desk._logins.tokens("Ada"):
+        desk.requests._desk._logins.end(token)
+    qtbot.waitUntil(lambda: session.account.user is None, timeout=5000)
+    assert session.service.held is None
+    assert window._user.text() == "Log in"
 
 
-def test_the_bit_set_by_hand_stays_in_sight_in_another_language(window: Window) -> None:
-    window.session.log_in(ADA)
+def test_without_an_engine_nobody_logs_in_and_it_is_said(window: Window, qtbot: QtBot) -> None:
+    window.go(5)
+    page = window.page
+    assert isinstance(page, SetupPage)
+    page.login.name.setEditText("Ada")
+    page.login.pin.setText(PIN)
+    page.login.log_in.click()
+    qtbot.waitUntil(lambda: page.login.problem.text() == NO_CONNECTION, timeout=10_000)
+    assert page.login.log_in.isEnabled()
+    assert window.session.account.user is None
+
+
+def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
+    window: Window, desk: Desk, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("station.panel.pending.PATIENCE_S", 0.5)
+    log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
+    window.go(2)
+    page = window.page
+    assert isinstance(page, StatisticsPage)
+    page.zero.click()
+    assert not page.zero.isEnabled()
+    qtbot.waitUntil(page.zero.isEnabled, timeout=5000)
+    assert desk.given == [orders.ResetCounts("Ada")]
+    assert page._problem.text() == ""
+    desk.close()
+    page.zero.click()
+    qtbot.waitUntil(lambda: page._problem.text() == NO_CONNECTION, timeout=5000)
+    assert page.zero.isEnabled()
+    assert window.session.account.user is not None, "the engine may come back"
+
+
+def test_the_bit_set_by_hand_stays_in_sight_in_another_language(window: Window, desk: Desk, qtbot: QtBot) -> None:
+    log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
     window.go(3)
-    window.session.serve(Service(0.0, "Ada", bit=int(Status.BUSY)))
+    hold(window.session, qtbot, HoldService(bit=int(Status.BUSY)))
     window.speak("de")
     page = window.page
     assert isinstance(page, LinePage)
@@ -94,22 +127,24 @@ def test_the_line_page_of_an_absent_engine_claims_nothing(window: Window) -> Non
     window.go(3)
     page = window.page
     assert isinstance(page, LinePage)
-    window.session._on_status(status())
+    window.session.received._on_status(status())
     assert page._lamps["STATUS", Status.READY].text() == "● READY"
-    window.session._on_status(status(at_s=time.monotonic() - 10))
+    window.session.received._on_status(status(at_s=time.monotonic() - 10))
     assert page._lamps["STATUS", Status.READY].text() == "? READY"
     assert page._stale.isVisible()
 
 
-def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(window: Window, frames: dict[str, Image], qtbot: QtBot) -> None:
-    session = window.session
-    changed = session.settings.model_copy(update={"recipes": {2: session.settings.recipes.get(2) or _empty(session)}})
-    session.settings = changed
-    loaded, archive = prepare(changed, 1), Archive(changed.archive)
+def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
+    window: Window, desk: Desk, frames: dict[str, Image], qtbot: QtBot
+) -> None:
+    session, path = window.session, desk.path
+    path.write_text(path.read_text() + "\n[recipes.2.model]\nhole_min_mm = 0.1\n")
+    session.received.read_settings()
+    loaded, archive = prepare(session.received.settings, 1), Archive(session.received.settings.archive)
     frame = Frame(frames[label_with("OK")["frame"]], datetime.now(UTC), "cam", Origin.SIMULATED)
     archive.commit(archive.begin(frame), ok_inspection(), Part("A", 1, Origin.SIMULATED), loaded.provenance, frame.grabbed_at)
     archive.close()
-    session.log_in(QUENTIN)
+    log_in(session, desk, qtbot, "Quentin", Level.QUALITY)
     page = recipe_page(window)
 
     def asked() -> None:
@@ -129,69 +164,80 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(window: Wi
     page.fields["limits.hole.threshold"].edit.setText("0.8")
     assert not page.save.isEnabled()
     asked()
-    session.log_in(replace(QUENTIN, name="Quirin"))
+    log_in(session, desk, qtbot, "Quirin", Level.QUALITY)
     assert page.reason.text() == ""
     page.reason.setText(REASON)
     assert not page.save.isEnabled(), "it was another one who asked"
 
 
-def _empty(session: Session) -> object:
-    field = type(session.settings).model_fields["recipes"].annotation
-    return field.__args__[1]()  # type: ignore[union-attr]
-
-
-def test_a_change_is_asked_for_until_the_station_has_taken_it(window: Window, path: Path) -> None:
+def test_a_change_is_waited_for_until_the_station_uses_it_or_says_why_not(window: Window, desk: Desk, path: Path, qtbot: QtBot) -> None:
     session, heard = window.session, list[str]()
-    session.change_used.connect(lambda: heard.append("used"))
-    session.change_refused.connect(lambda: heard.append("refused"))
-    session._on_status(status())
-    session.log_in(QUENTIN)
-    place = ("recipes", "1", "model", "limits", "hole", "threshold")
-    change(session, Level.QUALITY, {place: (0.46, 0.9)}, REASON)
-    session._on_status(status(reloaded_s=time.time() - 60))
-    assert heard == [], "the station has not yet read them"
-    session._on_status(status(started_s=1.0))
-    assert heard == [], "an engine may have read them before they were changed"
-    session._on_status(status(reloaded_s=time.time() + 1))
-    assert heard == ["used"]
-    change(session, Level.QUALITY, {place: (0.9, 0.2)}, REASON)
-    alarm = (int(Alarm.SETTINGS_REFUSED),)
-    session._on_status(status(alarms=alarm))
-    assert heard == ["used"], "an alarm of a change before says nothing of this one"
-    session._on_status(status(alarms=alarm, reloaded_s=time.time() + 1))
-    assert heard == ["used", "refused"]
+    session.change.used.connect(lambda: heard.append("used"))
+    session.change.refused.connect(heard.append)
+    log_in(session, desk, qtbot, "Quentin", Level.QUALITY)
+    desk.turns = False
+    session.change.make([Changed(HOLE, 0.9, 0.46)], REASON)
+    assert session.change.waiting
+    session.change.make([Changed(HOLE, 0.8, 0.46)], REASON)
+    qtbot.wait(300)
+    assert heard == [], "the station has not yet come to it"
+    assert adjustments.read(path) == {}
+    desk.turns = True
+    qtbot.waitUntil(lambda: heard == ["used"], timeout=10_000)
+    assert session.received.settings == load(path)
     assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"threshold": 0.9}}}}}}
+    session.change.make([Changed(HOLE, 7.0, 0.9)], REASON)
+    qtbot.waitUntil(lambda: len(heard) == 2, timeout=10_000)
+    assert heard[1] == "limits.hole.threshold: Input should be less than or equal to 1"
+    assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"threshold": 0.9}}}}}}
+    assert [(e.who, e.before, e.after) for e in reversed(told(session, Kind.SETTING))] == [
+        ("Quentin", "0.46", "0.9"),
+        ("Quentin", "0.9", "7"),
+        ("Quentin", "7", "0.9"),
+    ]
 
 
-def test_two_windows_do_not_wipe_each_other_out(window: Window, path: Path) -> None:
+def test_the_chosen_alarm_stays_chosen_when_another_comes(window: Window, desk: Desk, qtbot: QtBot) -> None:
     session = window.session
-    session.log_in(QUENTIN)
-    with adjustments.editing(path), pytest.raises(SettingsError, match="another window saves"):
-        change(session, Level.QUALITY, {("recipes", "1", "quality", "min_sharpness"): (0.01, 0.02)}, REASON)
-    change(session, Level.QUALITY, {("recipes", "1", "quality", "min_sharpness"): (0.01, 0.02)}, REASON)
-    first = session.change
-    assert first is not None
-    assert first.undo is not None
-    change(session, Level.QUALITY, {("recipes", "1", "model", "limits", "hole", "threshold"): (0.46, 0.5)}, REASON)
-    first.undo()
-    assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"threshold": 0.5}}}}}}
-
-
-def test_the_chosen_alarm_stays_chosen_when_another_comes(window: Window) -> None:
-    session = window.session
-    append(session.folder, Kind.ALARM, "station", f"16#{int(Alarm.CAMERA_LOST):04X}")
+    append(session.received.folder, Kind.ALARM, "station", f"16#{int(Alarm.CAMERA_LOST):04X}")
     window.go(4)
     page = window.page
     assert isinstance(page, AlarmsPage)
     page.table.selectRow(0)
-    append(session.folder, Kind.ALARM, "station", f"16#{int(Alarm.ARCHIVE_FULL):04X}")
+    append(session.received.folder, Kind.ALARM, "station", f"16#{int(Alarm.ARCHIVE_FULL):04X}")
     page.refresh()
-    session.log_in(BOB)
+    log_in(session, desk, qtbot, "Bob", Level.OPERATOR)
     page.acknowledge.click()
+    assert not page.acknowledge.isEnabled()
+    qtbot.waitUntil(page.acknowledge.isEnabled, timeout=5000)
     (seen,) = told(session, Kind.ALARM_SEEN)
     first = told(session, Kind.ALARM)[-1]
     assert (seen.who, seen.subject) == ("Bob", str(first.number))
     assert "camera" in page.action.text()
+
+
+def test_what_the_engine_refuses_is_said_on_the_page(window: Window, desk: Desk, qtbot: QtBot) -> None:
+    page = window.page
+    assert isinstance(page, LivePage)
+
+    def asked() -> None:
+        page._ask_test()
+        qtbot.wait(100)
+        assert page._nok_text.text() == "a login of the level operator is needed"
+
+    qtbot.waitUntil(asked, timeout=5000)
+    assert desk.given == []
+
+
+def test_an_answer_to_a_page_that_was_made_again_is_dropped(window: Window, desk: Desk, qtbot: QtBot) -> None:
+    log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
+    window.go(2)
+    page = window.page
+    assert isinstance(page, StatisticsPage)
+    page.zero.click()
+    window.speak("de")
+    qtbot.waitUntil(lambda: desk.given == [orders.ResetCounts("Ada")], timeout=5000)
+    qtbot.wait(200)
 
 
 def test_an_alarm_of_the_run_before_is_over_when_it_is_not_there_any_more(tmp_path: Path) -> None:
@@ -206,36 +252,13 @@ def test_an_alarm_of_the_run_before_is_over_when_it_is_not_there_any_more(tmp_pa
     assert kinds == [*((Kind.ALARM, code) for code in sorted(both)), (Kind.ALARM_OVER, int(Alarm.CAMERA_LOST))]
 
 
-def test_what_cannot_be_taken_back_just_now_is_taken_back_later(window: Window, path: Path) -> None:
-    session = window.session
-    session._on_status(status())
-    session.log_in(QUENTIN)
-    change(session, Level.QUALITY, {("recipes", "1", "model", "limits", "hole", "threshold"): (0.46, 0.9)}, REASON)
-    refused = status(alarms=(int(Alarm.SETTINGS_REFUSED),), reloaded_s=time.time() + 1)
-    with adjustments.editing(path):
-        session._on_status(refused)
-    assert adjustments.read(path) != {}
-    session._on_status(refused)
-    assert adjustments.read(path) == {}
-
-
-def test_two_changes_that_wait_together_are_taken_back_together(window: Window, path: Path) -> None:
-    session = window.session
-    session._on_status(status())
-    session.log_in(QUENTIN)
-    for key, before, after in (("hole", 0.46, 0.9), ("missing_weld", 0.34, 0.9)):
-        change(session, Level.QUALITY, {("recipes", "1", "model", "limits", key, "threshold"): (before, after)}, REASON)
-    session._on_status(status(alarms=(int(Alarm.SETTINGS_REFUSED),), reloaded_s=time.time() + 1))
-    assert adjustments.read(path) == {}
-
-
 def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(window: Window, frames: dict[str, Image]) -> None:
     session = window.session
-    session._on_parts([part(nok_inspection(), 0)])
-    session._on_preview(make_preview(0, frames[label_with("OK")["frame"]], None))
-    assert session.last_nok is not None
-    assert session.last_nok.preview is None
-    assert not session.thumbs
+    session.received._on_parts([part(nok_inspection(), 0)])
+    session.received._on_preview(make_preview(0, frames[label_with("OK")["frame"]], None))
+    assert session.received.last_nok is not None
+    assert session.received.last_nok.preview is None
+    assert not session.received.thumbs
 
 
 def test_an_unreadable_journal_is_told_and_stops_no_engine(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

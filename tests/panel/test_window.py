@@ -7,9 +7,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
-from station.channel import Inbox, Publisher, Subscriber
+from station.channel import Publisher, Subscriber
 from station.domain import Image, Ring
 from station.errors import LineError
+from station.orders import TestPicture
 from station.panel import theme
 from station.panel.history.page import HistoryPage
 from station.panel.keys import Keys
@@ -20,10 +21,10 @@ from station.plc.alarms import Alarm
 from station.plc.port import Counts
 from station.plc.registers import Offline
 from station.preview import make_preview
-from station.requests import TestPicture
 from station.settings import ChannelSettings
-from station.users import Level, User
-from tests.panel.made import part, status
+from station.users import Level
+from tests.desk import Desk
+from tests.panel.made import log_in, part, status
 from tests.parts import label_with, nok_inspection, ok_inspection
 
 TABS_PX = 80
@@ -54,7 +55,7 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
         assert page.facts.values["parts"].text() == "4"
         assert page.lamp.lamp.word == "NOK"
         assert page.weld.drawn is not None
-        assert window.session.last_nok is not None
+        assert window.session.received.last_nok is not None
 
     qtbot.waitUntil(told, timeout=5000)
     assert window._badge.text() == "SIMULATED CAMERA"
@@ -68,44 +69,34 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
 def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(window: Window, frames: dict[str, Image], qtbot: QtBot) -> None:
     session = window.session
     item = label_with("OK")
-    session._on_parts([part(ok_inspection(), 1)])
-    session._on_preview(make_preview(1, frames[item["frame"]], None))
+    session.received._on_parts([part(ok_inspection(), 1)])
+    session.received._on_preview(make_preview(1, frames[item["frame"]], None))
     assert live(window).weld._note == ""
-    session._on_parts([part(ok_inspection(), 2)])
+    session.received._on_parts([part(ok_inspection(), 2)])
     assert "no picture of this part" in live(window).weld._note
 
 
-def test_the_button_asks_the_engine_for_a_test_picture(
-    window: Window, publisher: Publisher, settings: ChannelSettings, qtbot: QtBot
-) -> None:
+def test_the_button_asks_the_engine_for_a_test_picture(window: Window, publisher: Publisher, desk: Desk, qtbot: QtBot) -> None:
     assert not live(window).test.isEnabled(), "nobody is logged in, no engine was heard yet"
-    window.session.log_in(User("Bob", Level.OPERATOR))
+    log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)
     assert not live(window).test.isEnabled(), "no engine was heard yet"
-    inbox = Inbox(settings)
-    try:
 
-        def heard() -> None:
-            publisher.send(status())
-            assert live(window).test.isEnabled()
+    def heard() -> None:
+        publisher.send(status())
+        assert live(window).test.isEnabled()
 
-        qtbot.waitUntil(heard, timeout=5000)
-        assert not inbox.requests()
-
-        def asked() -> None:
-            qtbot.mouseClick(live(window).test, Qt.MouseButton.LeftButton)
-            assert [type(request) for request in inbox.requests()] == [TestPicture]
-
-        qtbot.waitUntil(asked, timeout=5000)
-    finally:
-        inbox.close()
+    qtbot.waitUntil(heard, timeout=5000)
+    assert desk.given == []
+    qtbot.mouseClick(live(window).test, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: desk.given == [TestPicture()], timeout=5000)
 
 
 def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> None:
     session = window.session
-    session._on_status(status())
-    session._on_parts([part(ok_inspection())])
+    session.received._on_status(status())
+    session.received._on_parts([part(ok_inspection())])
     assert live(window).lamp.lamp.word == "OK"
-    session._on_status(status(at_s=time.monotonic() - 10))
+    session.received._on_status(status(at_s=time.monotonic() - 10))
     live(window).age()
     assert live(window).lamp.lamp.word == "OFFLINE"
     assert "no word from the engine" in window._alarm.text()
@@ -121,13 +112,13 @@ def test_a_restarted_engine_needs_no_new_panel(window: Window, settings: Channel
 
         qtbot.waitUntil(told, timeout=5000)
         end.close()
-        window.session._on_status(status(at_s=time.monotonic() - 10))
+        window.session.received._on_status(status(at_s=time.monotonic() - 10))
         assert live(window).lamp.lamp.word == "OFFLINE"
 
 
 def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Window, qtbot: QtBot) -> None:
-    window.session._on_status(status(counts=Counts(7, 2, 1)))
-    window.session._on_parts([part(nok_inspection(), 5)])
+    window.session.received._on_status(status(counts=Counts(7, 2, 1)))
+    window.session.received._on_parts([part(nok_inspection(), 5)])
     window.go(2)
     window.speak("de")
     assert [window._buttons.button(i).text() for i in range(6)] == ["Live", "Verlauf", "Statistik", "Linie", "Alarme", "Einrichten"]
@@ -136,7 +127,7 @@ def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Wind
     assert live(window).facts.values["parts"].text() == "10"
     assert live(window).facts.values["part"].text() == "5"
     assert theme.colors() is theme.LIGHT
-    window.session._on_status(status())
+    window.session.received._on_status(status())
     assert live(window).lamp.lamp.word == "NOK"
 
 
@@ -184,7 +175,7 @@ def test_keys_on_the_screen_write_where_the_cursor_stands(window: Window, qtbot:
 
 
 def test_a_lost_plc_is_told(window: Window) -> None:
-    window.session._on_status(status(Offline.PLC_SILENT))
+    window.session.received._on_status(status(Offline.PLC_SILENT))
     assert live(window).lamp.lamp.word == "PLC LOST"
 
 

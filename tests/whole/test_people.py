@@ -1,6 +1,7 @@
 """What people do at a running station: service mode, setting-up pictures, masters, changed settings; the PLC is told."""
 
 import asyncio
+import json
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -19,15 +20,16 @@ from station.camera.pylon import PylonCamera
 from station.domain import Frame, Image, Verdict
 from station.events import Event, LookEvent, PartEvent, StatusEvent
 from station.listener import Listener
+from station.orders import Order, OrderQueue, Reload, ResetCounts, Service, TestPicture
 from station.plc.alarms import Alarm
 from station.plc.line import make_line
 from station.plc.modbus import ModbusClient
 from station.plc.registers import Control, Flags, Offline, Status, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.recipe import prepare
-from station.requests import Reload, Request, ResetCounts, Service, TestPicture
+from station.released import Released
 from station.settings_file import load
-from station.startup import make_cycle
+from station.startup import make_camera, make_cycle
 from synth.feed import Feed
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import label_with
@@ -39,25 +41,25 @@ class Running:
     def __init__(self, path: Path, feed: Feed) -> None:
         self.path, self.feed, self.settings = path, feed, load(path)
         self.events: list[Event] = []
-        self._asked: list[Request] = []
+        self._orders = OrderQueue()
         self._archive, self._line = Archive(self.settings.archive), make_line(self.settings.plc)
         self._alarm_log, self._stop = AlarmLog(self.settings.archive.folder), threading.Event()
-        listener = Listener(self.events.append, lambda _: None, self._requests)
+        listener = Listener(self.events.append, lambda _: None, self._orders.take)
         loaded = prepare(self.settings, 1)
-        cycle = make_cycle(self.settings, loaded, self._line, self._archive, listener, self._alarm_log, lambda: load(path))
+        released = Released(self.settings, lambda: load(path), make_camera)
+        cycle = make_cycle(self.settings, loaded, self._line, self._archive, listener, self._alarm_log, released)
         self._line.start()
         self._thread = threading.Thread(target=cycle.run, args=(self._stop,))
         self._thread.start()
 
-    def _requests(self) -> list[Request]:
-        taken = self._asked.copy()
-        del self._asked[: len(taken)]
-        return taken
+    def ask(self, order: Order) -> None:
+        self._orders.put(order)
 
-    def ask(self, request: Request) -> None:
-        self._asked.append(request)
+    def adjust(self, changes: dict[str, object]) -> None:
+        """As if by hand."""
+        adjustments.path_of(self.path).write_text(json.dumps(changes))
 
-    def until(self, said: Callable[[StatusEvent], bool], again: Request | None = None) -> StatusEvent:
+    def until(self, said: Callable[[StatusEvent], bool], again: Order | None = None) -> StatusEvent:
         """The first status that says so."""
         end, start = time.monotonic() + 20, len(self.events)
         while time.monotonic() < end:
@@ -132,7 +134,7 @@ def enable(running: Running) -> None:
 def test_service_mode_holds_ready_at_0_tells_the_plc_and_ends_with_its_lease(running: Running, frames: dict[str, Image]) -> None:
     good = frames[label_with("OK")["frame"]]
     assert running.part("ONE", good).verdict is VerdictCode.OK
-    service = Service(time.time(), "Ada", bit=int(Status.NOK))
+    service = Service("Ada", bit=int(Status.NOK))
 
     async def drive() -> tuple[dict[str, object], dict[str, object], bool]:
         line = SimulatedLine.at("127.0.0.1", running._line.port, accept_simulated=True)
@@ -162,9 +164,7 @@ def test_service_mode_holds_ready_at_0_tells_the_plc_and_ends_with_its_lease(run
 def test_setting_up_pictures_have_numbers_and_leave_no_record(running: Running, frames: dict[str, Image]) -> None:
     running.feed.show(frames[label_with("OK")["frame"]])
     enable(running)
-    running.until(
-        lambda _: any(isinstance(e, LookEvent) for e in running.events), Service(time.time(), "Ada", look=True, exposure_us=900.0)
-    )
+    running.until(lambda _: any(isinstance(e, LookEvent) for e in running.events), Service("Ada", look=True, exposure_us=900.0))
     seen = next(e for e in running.events if isinstance(e, LookEvent))
     assert seen.exposure_us == 900.0
     assert seen.ring is not None
@@ -172,32 +172,32 @@ def test_setting_up_pictures_have_numbers_and_leave_no_record(running: Running, 
     assert 20 < seen.mean_dn < 200
     assert not find(running.settings.archive.folder)
     running.feed.withdraw()
-    running.until(lambda _: any(isinstance(e, LookEvent) and e.problem for e in running.events), Service(time.time(), "Ada", look=True))
+    running.until(lambda _: any(isinstance(e, LookEvent) and e.problem for e in running.events), Service("Ada", look=True))
 
 
 def test_a_master_that_is_due_is_told_and_judged_from_the_window(running: Running, frames: dict[str, Image]) -> None:
     status = running.until(lambda e: e.camera_there)
     assert Alarm.MASTERS_DUE in status.alarms
     running.feed.show(frames[label_with("OK")["frame"]])
-    running.ask(TestPicture(time.time(), master="MASTER-OK"))
+    running.ask(TestPicture(master="MASTER-OK"))
     running.until(lambda e: Alarm.MASTERS_DUE not in e.alarms)
     assert [(row.purpose, row.serial, row.verdict) for row in find(running.settings.archive.folder)] == [("golden", "MASTER-OK", "OK")]
-    told = [(e.kind, e.subject) for e in entries(running.settings.archive.folder, (Kind.ALARM, Kind.ALARM_OVER), newest_first=False)]
-    assert (Kind.ALARM_OVER, f"16#{Alarm.MASTERS_DUE:04X}") in told
+    folder, over = running.settings.archive.folder, f"16#{Alarm.MASTERS_DUE:04X}"
+    running.until(lambda _: over in [e.subject for e in entries(folder, (Kind.ALARM_OVER,))])  # written by another thread
 
 
 def test_changed_settings_are_used_at_once_and_refused_ones_are_an_alarm(running: Running, frames: dict[str, Image]) -> None:
     good = frames[label_with("OK")["frame"]]
     before = running.until(lambda e: e.camera_there)
-    adjustments.write(running.path, {"recipes": {"1": {"model": {"hole_threshold": 0.0001}}}, "camera": {"exposure_us": 1500.0}})
+    running.adjust({"recipes": {"1": {"model": {"hole_threshold": 0.0001}}}, "camera": {"exposure_us": 1500.0}})
     running.ask(Reload(time.time()))
     running.until(lambda e: e.camera_there and e.config_crc != before.config_crc)
     assert running.part("STRICT", good).verdict is VerdictCode.NOK
-    adjustments.write(running.path, {"recipes": {"1": {"model": {"hole_threshold": 7}}}})
+    running.adjust({"recipes": {"1": {"model": {"hole_threshold": 7}}}})
     running.ask(Reload(time.time()))
     running.until(lambda e: Alarm.SETTINGS_REFUSED in e.alarms)
     assert running.part("STILL STRICT", good).verdict is VerdictCode.NOK
-    adjustments.write(running.path, {})
+    running.adjust({})
     running.ask(Reload(time.time()))
     running.until(lambda e: Alarm.SETTINGS_REFUSED not in e.alarms and e.config_crc == before.config_crc)
     assert running.part("AS BEFORE", good).verdict is VerdictCode.OK
@@ -217,7 +217,7 @@ def test_a_part_is_never_judged_with_an_exposure_that_was_tried_by_hand(
     monkeypatch.setattr(PylonCamera, "grab", noting)
     running.feed.show(good)
     enable(running)
-    wanted = Service(time.time(), "Ada", look=True, exposure_us=900.0)
+    wanted = Service("Ada", look=True, exposure_us=900.0)
     running.until(lambda _: any(isinstance(e, LookEvent) for e in running.events), wanted)
     assert used[-1] == 900.0
     looks = len(used)
@@ -280,7 +280,7 @@ def test_a_camera_that_cannot_be_used_so_is_refused_and_the_one_before_goes_on(
 ) -> None:
     good = frames[label_with("OK")["frame"]]
     enable(running)
-    adjustments.write(running.path, change)
+    running.adjust(change)
     running.ask(Reload(time.time()))
     running.until(lambda e: Alarm.SETTINGS_REFUSED in e.alarms)
     answer = running.part("AS BEFORE", good)
@@ -291,7 +291,7 @@ def test_a_camera_that_cannot_be_used_so_is_refused_and_the_one_before_goes_on(
 def test_a_recipe_that_is_not_in_use_must_be_fit_too(running: Running) -> None:
     enable(running)
     asked = time.time()
-    adjustments.write(running.path, {"recipes": {"2": {"model": {"path": "nowhere.onnx"}}}})
+    running.adjust({"recipes": {"2": {"model": {"path": "nowhere.onnx"}}}})
     running.ask(Reload(asked))
     status = running.until(lambda e: e.reloaded_s == asked)
     assert Alarm.SETTINGS_REFUSED in status.alarms
@@ -319,7 +319,7 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
     assert running.part("MASTER-OK", bad, golden=True).verdict is VerdictCode.TEST
     assert running.part("NOT TRUSTED", good).verdict is VerdictCode.TEST
     assert (heard("NOT TRUSTED").told, heard("NOT TRUSTED").record.verdict) == (VerdictCode.TEST, Verdict.OK)
-    running.ask(ResetCounts(time.time(), "Ada"))
+    running.ask(ResetCounts("Ada"))
     running.until(lambda e: e.line.counts.total == 0)
 
     def broken(*_: object) -> None:

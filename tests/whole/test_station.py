@@ -25,11 +25,11 @@ from station.domain import Frame, Image, Purpose, Verdict
 from station.errors import ModelError, RecordError
 from station.events import Event, PartEvent
 from station.listener import Listener
+from station.orders import Order, TestPicture
 from station.plc.line import ModbusLine, make_line
 from station.plc.registers import CommandCode, Flags, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.recipe import prepare
-from station.requests import Request, TestPicture
 from station.settings import Settings
 from station.startup import make_cycle
 from station.watch import Watch
@@ -48,7 +48,7 @@ class Station:
     port: int
     folder: Path
     events: list[Event]
-    asked: list[Request]
+    asked: list[Order]
 
     def run(self, parts: list[Image | None], accept_simulated: bool = True) -> list[Answer]:
         """Pass parts through the line; None: no picture before the camera."""
@@ -104,15 +104,15 @@ def station(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     loaded = prepare(settings, 1)
     archive, line = Archive(settings.archive), make_line(settings.plc)
     line.start()
-    asked: list[Request] = []
+    asked: list[Order] = []
 
-    def requests() -> list[Request]:
+    def orders() -> list[Order]:
         taken = asked.copy()
         del asked[: len(taken)]
         return taken
 
     alarm_log = AlarmLog(settings.archive.folder)
-    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None, requests), alarm_log)
+    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None, orders), alarm_log)
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
@@ -189,7 +189,7 @@ def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(s
 
 def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(station: Station, frames: dict[str, Image]) -> None:
     (before,) = station.run([frames[label_with("OK")["frame"]]])
-    station.asked.append(TestPicture(time.time()))
+    station.asked.append(TestPicture())
     event = station.part_events(2)[-1]
     assert (event.record.purpose, event.record.verdict, event.told) == (Purpose.TEST, Verdict.OK, VerdictCode.NONE)
 

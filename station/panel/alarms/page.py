@@ -6,13 +6,13 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.journal import Kind, entries
-from station.archive.journal_writer import append
 from station.errors import RecordError
 from station.panel.card import Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
 from station.plc.alarms import TEXTS
+from station.requests import Acknowledge, Answer
 
 SHOWN = 200
 REFRESH_MS = 2000
@@ -62,7 +62,7 @@ class AlarmsPage(Page):
     def refresh(self) -> None:
         """Read the journal again."""
         try:
-            told = entries(self._session.folder, (Kind.ALARM, Kind.ALARM_OVER, Kind.ALARM_SEEN), limit=3 * SHOWN)
+            told = entries(self._session.received.folder, (Kind.ALARM, Kind.ALARM_OVER, Kind.ALARM_SEEN), limit=3 * SHOWN)
         except RecordError as error:
             self._problem.setText(str(error))
             return
@@ -99,18 +99,19 @@ class AlarmsPage(Page):
         self.action.setText(self._actions.get(self.table.chosen(), ""))
 
     def _acknowledge(self) -> None:
-        number, user = self.table.chosen(), self._session.user
+        number, user = self.table.chosen(), self._session.account.user
         if user is None:
             self._problem.setText(translate("alarms", "log in first (page Setup)"))
         elif number is None:
             self._problem.setText(translate("alarms", "choose an alarm first"))
         else:
-            try:
-                append(self._session.folder, Kind.ALARM_SEEN, user.name, str(number))
-                self._problem.setText("")
-            except RecordError as error:
-                self._problem.setText(str(error))
-            self.refresh()
+            self.acknowledge.setEnabled(False)
+            self._session.account.ask(Acknowledge(int(str(number))), self._on_answer, self)
+
+    def _on_answer(self, answer: Answer) -> None:
+        self.acknowledge.setEnabled(True)
+        self.refresh()
+        self._problem.setText(data(answer.refusal) if answer.refusal else "")
 
     def close_page(self) -> None:
         """Stop following."""

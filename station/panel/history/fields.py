@@ -1,22 +1,20 @@
 """What is looked for among the past parts."""
 
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 from pathlib import Path
 
 from PySide6.QtCore import QDateTime, QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QDateTimeEdit, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
-from station.archive.reader import Row, Wanted, find
-from station.archive.review import Review, State, reviews
+from station.archive.reader import Row
+from station.archive.review import Review, State
 from station.defects import Reason
-from station.domain import SEGMENTS, Purpose, Verdict
+from station.domain import SEGMENTS, Verdict
 from station.panel.card import Choice, label
-from station.panel.session import FILM
+from station.panel.history.search import TO_CONFIRM, Search
 from station.panel.words import data, translate
 
-SEARCHED = 5000
-"""The newest parts, when the state of their reviews is asked for."""
-BETWEEN, TO_CONFIRM = -1, "to be confirmed"
+BETWEEN = -1
 
 
 class SearchFields(QWidget):
@@ -101,36 +99,26 @@ class SearchFields(QWidget):
         self._between.setVisible(self.since.currentData() == BETWEEN)
         self.asked.emit()
 
-    def wanted(self) -> Wanted:
-        """What the fields say, but for the state of the reviews."""
-        segment, score, hours = self.segment.currentData(), self.score.currentData(), self.since.currentData()
+    def asked_for(self) -> Search:
+        """Return what the fields say."""
+        hours = self.since.currentData()
         between = hours == BETWEEN
-        return Wanted(
-            serial=self.serial.text().strip() or None,
-            since=None if hours is None else _utc(self.begin) if between else datetime.now(UTC) - timedelta(hours=hours),
+        return Search(
+            serial=self.serial.text(),
+            hours=None if between else hours,
+            since=_utc(self.begin) if between else None,
             until=_utc(self.end) if between else None,
             verdict=self.verdict.currentData(),
             reason=self.kind.currentData(),
-            segment=segment,
-            min_score=0.05 if segment is not None and score is None else score,
-            newest_first=True,
-            limit=FILM if self.state.currentData() is None else SEARCHED,
+            segment=self.segment.currentData(),
+            score=self.score.currentData(),
+            state=self.state.currentData(),
         )
 
     def search(self, folder: Path) -> tuple[list[Row], dict[int, Review]]:
-        """The newest 300 of the parts looked for, and all reviews. Raises RecordError."""
-        known, state = reviews(folder), self.state.currentData()
-        rows = find(folder, self.wanted())
-        return [row for row in rows if _fits(row, known.get(row.inspection_id), state)][:FILM], known
+        """Return the newest 300 of the parts looked for, and all reviews. Raises RecordError."""
+        return self.asked_for().run(folder, datetime.now(UTC))
 
 
 def _utc(edit: QDateTimeEdit) -> datetime:
     return datetime.fromtimestamp(edit.dateTime().toSecsSinceEpoch(), UTC)
-
-
-def _fits(row: Row, review: Review | None, state: str | None) -> bool:
-    """Whether a part is in this state of review; to be confirmed is a refused part that two people do not agree on yet."""
-    now = State.NONE if review is None else review.state
-    if state == TO_CONFIRM:
-        return row.verdict == Verdict.NOK and row.purpose == Purpose.PART and now is not State.AGREED
-    return state is None or now == state

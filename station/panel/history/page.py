@@ -10,21 +10,21 @@ from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QV
 from station.archive.export import export
 from station.archive.reader import Listed, Row, Wanted, find, read_records
 from station.archive.review import Opinion, Review, State, possible, reviews
-from station.archive.review_writer import give
 from station.domain import Verdict
 from station.durable import replacing
-from station.errors import RecordError, WeldgateError
+from station.errors import RecordError
 from station.panel.card import label
 from station.panel.dialogs import ask_file, ask_folder
 from station.panel.history.fields import SearchFields
 from station.panel.history.filmstrip import Filmstrip
 from station.panel.history.record_view import RecordView
+from station.panel.history.search import FOUND
 from station.panel.page import Page
-from station.panel.session import FILM, Session
+from station.panel.session import Session
 from station.panel.weld.kept import defect_map, small_pictures
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
-from station.users import Level
+from station.requests import Answer, GiveReview
 
 REFRESH_MS = 1000
 GALLERY = 60
@@ -42,6 +42,8 @@ class HistoryPage(Page):
         """Number of the newest part at the last search."""
         self._pictures: dict[int, QImage] = {}
         """Read for the gallery."""
+        self._waiting = False
+        """Whether the engine has not yet answered to a review."""
         self._review: Review | None = None
         """Of the chosen part."""
         self._lay_out()
@@ -51,9 +53,9 @@ class HistoryPage(Page):
         self.fields.asked.connect(self.search)
         self._work.done.connect(self._on_pictures)
         self._work.failed.connect(lambda why: self._problem.setText(data(why)))
-        session.user_changed.connect(self.comment.clear)
-        session.user_changed.connect(self.record.clear_marks)
-        session.user_changed.connect(self._on_user)
+        session.account.changed.connect(self.comment.clear)
+        session.account.changed.connect(self.record.clear_marks)
+        session.account.changed.connect(self._on_user)
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._follow)
         self._timer.start(REFRESH_MS)
@@ -112,17 +114,17 @@ class HistoryPage(Page):
     def search(self) -> None:
         """Read the index."""
         try:
-            rows, known = self.fields.search(self._session.folder)
+            rows, known = self.fields.search(self._session.received.folder)
         except RecordError as error:
             rows, known = [], {}
             self._problem.setText(str(error))
         else:
             self._problem.setText("")
-        last = self._session.last
+        last = self._session.received.last
         self._seen = 0 if last is None else last.record.inspection_id
         self._pictures = {row.inspection_id: self._pictures[row.inspection_id] for row in rows if row.inspection_id in self._pictures}
-        self.film.fill(rows, {**self._pictures, **self._session.thumbs}, known)
-        more, parts = translate("history", "the newest 300") if len(rows) == FILM else "", translate("history", "parts")
+        self.film.fill(rows, {**self._pictures, **self._session.received.thumbs}, known)
+        more, parts = translate("history", "the newest 300") if len(rows) == FOUND else "", translate("history", "parts")
         self._count.setText(f"{len(rows)} {parts}  {more}")
         if self.film.chosen() is None and rows:
             self.film.setCurrentRow(0)
@@ -136,13 +138,13 @@ class HistoryPage(Page):
         self.fields.clear()
         self.search()
         if number not in self.film.rows:
-            older = find(self._session.folder, Wanted(number=number))
-            self.film.fill([*older, *self.film.rows.values()], self._session.thumbs, self._reviews())
+            older = find(self._session.received.folder, Wanted(number=number))
+            self.film.fill([*older, *self.film.rows.values()], self._session.received.thumbs, self._reviews())
         self.film.setCurrentRow(list(self.film.rows).index(number) if number in self.film.rows else -1)
 
     def _follow(self) -> None:
         """New parts come by themselves, but not while somebody looks further down."""
-        last = self._session.last
+        last = self._session.received.last
         newer = last is not None and last.record.inspection_id != self._seen
         if newer and self.isVisible() and not self._work.busy and self.film.verticalScrollBar().value() == 0:
             self.search()
@@ -153,7 +155,7 @@ class HistoryPage(Page):
         if row is None:
             self.record.show_nothing()
         else:
-            self.record.show_row(self._session.folder, row)
+            self.record.show_row(self._session.received.folder, row)
         self._on_user()
 
     def _on_user(self) -> None:
@@ -163,11 +165,12 @@ class HistoryPage(Page):
         self._look()
 
     def _look(self) -> None:
-        number, user, review = self.film.chosen(), self._session.user, self._review
+        number, user, review = self.film.chosen(), self._session.account.user, self._review
         row = None if number is None else self.film.rows.get(number)
         for opinion, button in self.opinions.items():
             where = opinion is not Opinion.MISSED or bool(self.record.marks)
-            button.setEnabled(user is not None and row is not None and opinion in possible(row.verdict) and where)
+            allowed = user is not None and not self._waiting and where
+            button.setEnabled(allowed and row is not None and opinion in possible(row.verdict))
         for button in (self.export, self.list):
             button.setEnabled(user is not None)
         self.show_map.setEnabled(row is not None and self.record.strip_shown)
@@ -184,7 +187,7 @@ class HistoryPage(Page):
     def _reviews(self) -> dict[int, Review]:
         """All reviews; if they cannot be read, that is said."""
         try:
-            return reviews(self._session.folder)
+            return reviews(self._session.received.folder)
         except RecordError as error:
             self._problem.setText(str(error))
             return {}
@@ -194,25 +197,19 @@ class HistoryPage(Page):
         number = self.film.chosen()
         if number is None:
             return
-        try:
-            user, verdict = self._session.who(Level.OPERATOR), self.film.rows[number].verdict
-            marks = self.record.marks if opinion is Opinion.MISSED else {}
-            give(
-                self._session.folder,
-                user.name,
-                may_second=user.level >= Level.QUALITY,
-                inspection_id=number,
-                verdict=verdict,
-                opinion=opinion,
-                comment=self.comment.text().strip(),
-                marks=marks,
-            )
-        except WeldgateError as error:
-            self._problem.setText(data(str(error)))
-            return
-        self.comment.clear()
-        self.record.clear_marks()
-        self.search()
+        marks = self.record.marks if opinion is Opinion.MISSED else {}
+        self._waiting = True
+        self._look()
+        self._session.account.ask(GiveReview(number, opinion, self.comment.text().strip(), dict(marks)), self._on_said, self)
+
+    def _on_said(self, answer: Answer) -> None:
+        self._waiting = False
+        if answer.done:
+            self.comment.clear()
+            self.record.clear_marks()
+            self.search()
+        else:
+            self._problem.setText(data(answer.refusal))
         self._on_user()
 
     def _on_gallery(self, gallery: bool) -> None:
@@ -220,7 +217,7 @@ class HistoryPage(Page):
         self.search()
 
     def _read_pictures(self, rows: list[Row]) -> None:
-        folder, known = self._session.folder, {**self._pictures, **self._session.thumbs}
+        folder, known = self._session.received.folder, {**self._pictures, **self._session.received.thumbs}
         missing = [r for r in rows[:GALLERY] if r.inspection_id not in known]
         if missing and not self._work.busy:
             self._work.start(translate("history", "pictures"), lambda told: small_pictures(folder, missing, told))
@@ -232,7 +229,7 @@ class HistoryPage(Page):
                 self.record.strip.show_map(overlay)
         elif isinstance(found, dict):
             self._pictures |= found
-            self.film.fill(list(self.film.rows.values()), {**self._pictures, **self._session.thumbs}, self._reviews())
+            self.film.fill(list(self.film.rows.values()), {**self._pictures, **self._session.received.thumbs}, self._reviews())
         else:
             self._said.setText(str(found))
 
@@ -248,7 +245,7 @@ class HistoryPage(Page):
 
     def list_to(self, target: Path) -> None:
         """The parts in the list, one row each."""
-        folder, numbers = self._session.folder, list(self.film.rows)
+        folder, numbers = self._session.received.folder, list(self.film.rows)
 
         def work(told: Told) -> str:
             entries = _read(folder, numbers, told)
@@ -261,13 +258,13 @@ class HistoryPage(Page):
         self._work.start(translate("history", "table"), work)
 
     def _ask_map(self) -> None:
-        record, settings = self.record.record, self._session.settings
+        record, settings = self.record.record, self._session.received.settings
         if record is not None:
             self._work.start(translate("history", "defect map"), lambda _: defect_map(settings, record))
 
     def export_to(self, target: Path) -> None:
         """Crops of the parts that two people agree on."""
-        folder = self._session.folder
+        folder = self._session.received.folder
 
         def work(told: Told) -> str:
             entries = _read(folder, [number for number, review in reviews(folder).items() if review.agreed is not None], told)

@@ -103,20 +103,16 @@
         <translation>gespeichert und in Gebrauch</translation>
     </message>
     <message>
-        <source>the station refused the change (see its log), it was taken back</source>
-        <translation type="unfinished">die Station hat die Änderung abgelehnt (siehe ihre Logdatei), sie wurde zurückgenommen</translation>
+        <source>nothing was changed:</source>
+        <translation>nichts wurde geändert:</translation>
+    </message>
+    <message>
+        <source>waiting for the engine</source>
+        <translation>wartet auf die Prüfung</translation>
     </message>
     <message>
         <source>log in as setter first</source>
         <translation>erst als Einrichter anmelden</translation>
-    </message>
-    <message>
-        <source>saved; the station is about to use it</source>
-        <translation>gespeichert; die Station übernimmt es gerade</translation>
-    </message>
-    <message>
-        <source>saved; no engine is there, it is used at the next start</source>
-        <translation type="unfinished">gespeichert; die Prüfung läuft nicht, es gilt ab dem nächsten Start</translation>
     </message>
 </context>
 <context>
@@ -654,8 +650,64 @@
         <translation>die zweite Nachprüfung braucht die Stufe Qualität</translation>
     </message>
     <message>
-        <source>another window saves just now; save again</source>
-        <translation>ein anderes Fenster speichert gerade; noch einmal speichern</translation>
+        <source>no connection to the engine</source>
+        <translation>keine Verbindung zur Prüfung</translation>
+    </message>
+    <message>
+        <source>the request came too late: nothing was done</source>
+        <translation>die Anfrage kam zu spät: nichts wurde getan</translation>
+    </message>
+    <message>
+        <source>internal error: see the engine&apos;s log</source>
+        <translation>interner Fehler: siehe Logdatei der Station</translation>
+    </message>
+    <message>
+        <source>somebody else works on the station</source>
+        <translation>jemand anderes arbeitet an der Station</translation>
+    </message>
+    <message>
+        <source>there is no such alarm</source>
+        <translation>diesen Alarm gibt es nicht</translation>
+    </message>
+    <message>
+        <source>a reason is needed</source>
+        <translation>ein Grund ist nötig</translation>
+    </message>
+    <message>
+        <source>there was no moment without a part in work: nothing was changed</source>
+        <translation>es gab keinen Augenblick ohne Teil in Arbeit: nichts wurde geändert</translation>
+    </message>
+    <message>
+        <source>too many changes of settings wait: try again</source>
+        <translation>zu viele Änderungen von Einstellungen warten: erneut versuchen</translation>
+    </message>
+    <message>
+        <source>the camera cannot be used with these values: see the engine&apos;s log</source>
+        <translation>die Kamera arbeitet mit diesen Werten nicht: siehe Logdatei der Station</translation>
+    </message>
+    <message>
+        <source>the settings file cannot be used: see the engine&apos;s log; the settings before stay in use</source>
+        <translation>die Einstellungsdatei ist nicht verwendbar: siehe Logdatei der Station; die bisherigen Einstellungen gelten</translation>
+    </message>
+    <message>
+        <source>not in the settings file at the start</source>
+        <translation>beim Start nicht in der Einstellungsdatei</translation>
+    </message>
+    <message>
+        <source>the settings file said otherwise at the start</source>
+        <translation>beim Start stand in der Einstellungsdatei etwas anderes</translation>
+    </message>
+    <message>
+        <source>settings file</source>
+        <translation>Einstellungsdatei</translation>
+    </message>
+    <message>
+        <source>read again</source>
+        <translation>neu gelesen</translation>
+    </message>
+    <message>
+        <source>the engine stops</source>
+        <translation>die Prüfung endet</translation>
     </message>
     <message>
         <source>service mode</source>
@@ -885,7 +937,7 @@
     </message>
     <message>
         <source>distance to the training images</source>
-        <translation type="unfinished">Abstand zu den Trainingsbildern</translation>
+        <translation>Abstand zu den Trainingsbildern</translation>
     </message>
     <message>
         <source>steps ms</source>
@@ -1262,10 +1314,6 @@
         <source>choose a master first</source>
         <translation>erst ein Meisterteil wählen</translation>
     </message>
-    <message>
-        <source>no engine is there</source>
-        <translation>die Prüfung läuft nicht</translation>
-    </message>
 </context>
 <context>
     <name>people</name>
@@ -1427,20 +1475,16 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>{n} Teile eines anderen Modells oder unlesbare blieben außer Betracht</translation>
     </message>
     <message>
-        <source>saved; no engine is there, it is used at the next start</source>
-        <translation>gespeichert; die Prüfung läuft nicht, es gilt ab dem nächsten Start</translation>
-    </message>
-    <message>
-        <source>saved; the station is about to use it</source>
-        <translation>gespeichert; die Station übernimmt es gerade</translation>
+        <source>waiting for the engine</source>
+        <translation>wartet auf die Prüfung</translation>
     </message>
     <message>
         <source>saved and in use</source>
         <translation>gespeichert und in Gebrauch</translation>
     </message>
     <message>
-        <source>the station refused the change (see its log), it was taken back</source>
-        <translation>die Station hat die Änderung abgelehnt (siehe ihre Logdatei), sie wurde zurückgenommen</translation>
+        <source>nothing was changed:</source>
+        <translation>nichts wurde geändert:</translation>
     </message>
 </context>
 <context>
@@ -1654,10 +1698,6 @@ Jede Stufe darf, was die davor dürfen.</translation>
     <message>
         <source>log in first (page Setup)</source>
         <translation>erst anmelden (Seite Einrichten)</translation>
-    </message>
-    <message>
-        <source>no engine is there</source>
-        <translation type="unfinished">die Prüfung läuft nicht</translation>
     </message>
     <message>
         <source>reading records</source>

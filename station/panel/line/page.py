@@ -9,7 +9,7 @@ from PySide6.QtCore import QSignalBlocker, Qt, QTimer
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout
 
-from station.errors import RecordError, WeldgateError
+from station.errors import RecordError
 from station.panel import theme
 from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
@@ -28,7 +28,7 @@ from station.plc.registers import (
     VerdictCode,
     unpack_window,
 )
-from station.requests import Service
+from station.requests import HoldService
 from station.users import Level
 
 EDGES = 400
@@ -69,9 +69,10 @@ class LinePage(Page):
             self.bits.addItem(str(flag.name), int(flag))
         self.bits.currentIndexChanged.connect(self._set_bit)
         self._lay_out()
-        session.status_changed.connect(self._on_status)
-        session.service_changed.connect(self._on_service)
-        session.user_changed.connect(self._on_service)
+        session.received.status_changed.connect(self._on_status)
+        session.service.changed.connect(self._on_service)
+        session.service.refused.connect(self._on_refused)
+        session.account.changed.connect(self._on_service)
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._read_edges)
         self._timer.timeout.connect(self._on_status)
@@ -111,7 +112,7 @@ class LinePage(Page):
         column.addWidget(below, 1)
 
     def _on_status(self) -> None:
-        status, there = self._session.status, self._session.engine_there
+        status, there = self._session.received.status, self._session.received.engine_there
         if status is None or not status.status_words or not (self.isVisible() or self.registers.rowCount() == 0):
             return
         self._stale.setVisible(not there)
@@ -130,7 +131,7 @@ class LinePage(Page):
         words = status.status_words
         for_u32, for_f32 = (words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32"))
         test_f32 = struct.unpack(">f", struct.pack(">HH", *for_f32))[0]
-        if self._session.settings.plc.low_word_first:
+        if self._session.received.settings.plc.low_word_first:
             for_u32, for_f32 = for_u32[::-1], for_f32[::-1]
         self._words.setText(
             translate("line", "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:")
@@ -140,38 +141,39 @@ class LinePage(Page):
 
     def _on_service(self) -> None:
         session = self._session
-        self.service.setChecked(session.service is not None)
-        self.service.setEnabled(session.may(Level.SETTER))
-        self.bits.setEnabled(session.service is not None and session.may(Level.SETTER))
-        hint = "" if session.may(Level.SETTER) else translate("line", "log in as setter first (page Setup)")
+        self.service.setChecked(session.service.held is not None)
+        self.service.setEnabled(session.account.may(Level.SETTER))
+        self.bits.setEnabled(session.service.held is not None and session.account.may(Level.SETTER))
+        hint = "" if session.account.may(Level.SETTER) else translate("line", "log in as setter first (page Setup)")
         self._problem.setText(hint)
         with QSignalBlocker(self.bits):
-            self.bits.setCurrentIndex(max(0, self.bits.findData(0 if session.service is None else session.service.bit)))
+            self.bits.setCurrentIndex(max(0, self.bits.findData(0 if session.service.held is None else session.service.held.bit)))
 
     def _toggle_service(self) -> None:
         session = self._session
-        if session.service is not None:
-            session.end_service()
-        elif session.user is not None:
-            self._serve(Service(0.0, session.user.name))
+        if session.service.held is not None:
+            session.service.end()
+        elif session.account.user is not None:
+            self._hold(HoldService())
 
     def _set_bit(self) -> None:
-        service = self._session.service
-        if service is not None:
-            self._serve(Service(0.0, service.who, bit=int(self.bits.currentData())))
+        if self._session.service.held is not None:
+            self._hold(HoldService(bit=int(self.bits.currentData())))
 
-    def _serve(self, service: Service) -> None:
-        try:
-            self._session.serve(service)
-        except WeldgateError as error:
-            self._on_service()
-            self._problem.setText(data(str(error)))
+    def _hold(self, request: HoldService) -> None:
+        for widget in (self.service, self.bits):
+            widget.setEnabled(False)  # until the engine has answered
+        self._session.service.hold(request)
+
+    def _on_refused(self, why: str) -> None:
+        self._on_service()
+        self._problem.setText(data(why))
 
     def _read_edges(self) -> None:
         if not (self.isVisible() or not self._edges):
             return
         try:
-            new, self._place = tail_bus(self._session.folder, self._place, EDGES)
+            new, self._place = tail_bus(self._session.received.folder, self._place, EDGES)
         except RecordError as error:
             self._problem.setText(str(error))
             return

@@ -91,3 +91,15 @@ def _of_part(part: PartEvent, masters_due: bool, strength: float) -> Lamp:
 
 def _fade(age_s: float) -> float:
     return 1.0 if age_s <= FRESH_S else max(0.25, 1.0 - (age_s - FRESH_S) / (GONE_S - FRESH_S))
+
+
+def foot(part: PartEvent | None, now_s: float) -> str:
+    """Return what stands below the lamp: which part it is of, and how old that is; `now_s`: monotonic time."""
+    return "" if part is None else f"{part.record.serial or part.record.inspection_id} · {_ago(now_s - part.at_s)}"
+
+
+def _ago(age_s: float) -> str:
+    for unit, length_s in (("d", 86_400), ("h", 3600), ("min", 60)):
+        if age_s >= 2 * length_s:
+            return f"{age_s / length_s:.0f} {unit}"
+    return f"{age_s:.0f} s"

@@ -7,20 +7,21 @@ from PySide6.QtGui import QHideEvent, QImage, QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
 from station.domain import SEGMENTS, Purpose
-from station.errors import WeldgateError
 from station.events import PartEvent
 from station.panel.card import Facts, label, titled
-from station.panel.live.lamp_state import lamp
+from station.panel.live.lamp_state import foot, lamp
 from station.panel.live.score_history import ScoreHistory
 from station.panel.live.verdict_lamp import VerdictLamp
 from station.panel.page import Page
-from station.panel.session import Session, shows
+from station.panel.received import shows
+from station.panel.session import Session
 from station.panel.weld.clock_face import ClockFace
 from station.panel.weld.pictures import drawn, nok_scores, strip_image
 from station.panel.weld.strip_view import StripView
 from station.panel.weld.weld_view import WeldView
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
+from station.requests import Answer, TakeTestImage
 from station.users import Level
 
 AGE_MS = 200
@@ -72,10 +73,10 @@ class LivePage(Page):
         self._work.done.connect(self._on_map)
         self._work.failed.connect(lambda why: self._nok_text.setText(data(why)))
         self._lay_out()
-        session.status_changed.connect(self._on_status)
-        session.part_came.connect(self._on_part)
-        session.preview_came.connect(self._on_preview)
-        session.user_changed.connect(self.age)
+        session.received.status_changed.connect(self._on_status)
+        session.received.part_came.connect(self._on_part)
+        session.received.preview_came.connect(self._on_preview)
+        session.account.changed.connect(self.age)
         self._ageing = QTimer(self)
         self._ageing.timeout.connect(self.age)
         self._ageing.start(AGE_MS)
@@ -120,7 +121,7 @@ class LivePage(Page):
         grid.setColumnStretch(0, 1)
 
     def _on_status(self) -> None:
-        status = self._session.status
+        status = self._session.received.status
         if status is None:
             return
         c = status.line.counts
@@ -129,7 +130,7 @@ class LivePage(Page):
         self.age()
 
     def _on_part(self) -> None:
-        last = self._session.last
+        last = self._session.received.last
         if last is None:
             return
         event, record = last, last.record
@@ -141,7 +142,7 @@ class LivePage(Page):
         cycle = f"{sum(ms for ms in steps if ms is not None):.0f} ms"
         self.facts.set(part=record.inspection_id, serial=record.serial or "–", picture=picture, cycle=cycle)
         counts = [0] * SEGMENTS
-        for part in self._session.parts:
+        for part in self._session.received.parts:
             for index, nok in enumerate(part.record.inspection.nok if part.record.purpose is Purpose.PART else ()):
                 counts[index] += nok
         self.clock.show_counts(tuple(counts))
@@ -156,7 +157,7 @@ class LivePage(Page):
         self._show_pinned()
 
     def _show_pinned(self) -> None:
-        pinned = self._session.last_nok
+        pinned = self._session.received.last_nok
         self.show_map.setEnabled(pinned is not None and pinned.preview is not None)
         if pinned is not None:
             part, preview = pinned.part, pinned.preview
@@ -170,7 +171,7 @@ class LivePage(Page):
 
     def _show_picture(self) -> None:
         """The last part's own picture; else, darkened, the one before, and said so."""
-        last, preview = self._session.last, self._session.preview
+        last, preview = self._session.received.last, self._session.received.preview
         if last is None or (self.hold.isChecked() and self._held):
             return
         self._held = False
@@ -188,18 +189,17 @@ class LivePage(Page):
     def age(self) -> None:
         """Lamps fade with time."""
         session = self._session
-        last, now = session.last, time.monotonic()
-        status = session.status
-        there = session.engine_there and status is not None and status.camera_there
-        self.test.setEnabled(there and session.may(Level.OPERATOR))
-        foot = "" if last is None else f"{last.record.serial or last.record.inspection_id} · {_ago(now - last.at_s)}"
-        self.lamp.show_lamp(lamp(status, last, now), foot)
+        last, now = session.received.last, time.monotonic()
+        status = session.received.status
+        there = session.received.engine_there and status is not None and status.camera_there
+        self.test.setEnabled(there and session.account.may(Level.OPERATOR))
+        self.lamp.show_lamp(lamp(status, last, now), foot(last, now))
 
     def _ask_map(self) -> None:
-        pinned = self._session.last_nok
+        pinned = self._session.received.last_nok
         if pinned is None:
             return
-        record, settings = pinned.part.record, self._session.settings
+        record, settings = pinned.part.record, self._session.received.settings
 
         def work(_told: Told) -> tuple[int, QImage]:
             from station.panel.weld.kept import defect_map  # only who asks pays for the network
@@ -209,10 +209,11 @@ class LivePage(Page):
         self._work.start(translate("live", "defect map"), work)
 
     def _ask_test(self) -> None:
-        try:
-            self._session.test_picture()
-        except WeldgateError as error:
-            self._nok_text.setText(data(str(error)))
+        self._session.account.ask(TakeTestImage(), self._on_test, self)
+
+    def _on_test(self, answer: Answer) -> None:
+        if not answer.done:
+            self._nok_text.setText(data(answer.refusal))
 
     def _on_map(self, made: tuple[int, QImage]) -> None:
         number, overlay = made
@@ -222,7 +223,7 @@ class LivePage(Page):
     def _show_scores(self, segment: int) -> None:
         """Of the last parts, oldest first."""
         self._segment = segment
-        seen = [p for p in self._session.parts if p.record.purpose is Purpose.PART and p.record.inspection.scores]
+        seen = [p for p in self._session.received.parts if p.record.purpose is Purpose.PART and p.record.inspection.scores]
         scores = [p.record.inspection.scores[segment].nok for p in seen]
         parts, name = translate("live", "parts"), translate("live", "segment")
         self.scores.show_scores(scores, [p.record.inspection.nok[segment] for p in seen], f"{name} {segment + 1} · {len(seen)} {parts}")
@@ -251,10 +252,3 @@ class LivePage(Page):
 def _caption(part: PartEvent) -> str:
     record = part.record
     return f"{record.inspection_id}  {record.serial}  {record.grabbed_at.astimezone():%H:%M:%S}"
-
-
-def _ago(age_s: float) -> str:
-    for unit, length_s in (("d", 86_400), ("h", 3600), ("min", 60)):
-        if age_s >= 2 * length_s:
-            return f"{age_s / length_s:.0f} {unit}"
-    return f"{age_s:.0f} s"

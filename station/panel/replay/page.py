@@ -61,7 +61,7 @@ class ReplayPage(Page):
         self._looking.done.connect(self._on_picture)
         for work in (self._work, self._looking):
             work.failed.connect(lambda why: self._problem.setText(data(why)))
-        session.user_changed.connect(self._on_user)
+        session.account.changed.connect(self._on_user)
         self._on_user()
 
     def _lay_out(self) -> None:
@@ -73,10 +73,10 @@ class ReplayPage(Page):
         self.choose = QPushButton(translate("replay", "Choose…"))
         self.folder.setPlaceholderText(translate("replay", "folder with images"))
         word = translate("replay", "recipe")
-        for number in sorted({1, *self._session.settings.recipes}):
+        for number in sorted({1, *self._session.received.settings.recipes}):
             self.recipe.addItem(f"{word} {number}", number)
         self.scale = NumberField(1.0, 200.0, "µm/px")
-        self.scale.set(self._session.settings.weld.um_per_px)
+        self.scale.set(self._session.received.settings.weld.um_per_px)
         self.judge, self.report = QPushButton(translate("replay", "Judge")), QPushButton(translate("replay", "Report…"))
         self.only_flips = QPushButton(translate("replay", "Other verdicts only"))
         self.only_flips.setCheckable(True)
@@ -117,7 +117,7 @@ class ReplayPage(Page):
         rows.addWidget(split, 1)
 
     def _on_user(self) -> None:
-        hint = "" if self._session.may(Level.OPERATOR) else translate("replay", "log in first (page Setup)")
+        hint = "" if self._session.account.may(Level.OPERATOR) else translate("replay", "log in first (page Setup)")
         for button in (self.judge, self.choose, self.report):
             button.setEnabled(not hint)
             button.setToolTip(hint)
@@ -138,8 +138,8 @@ class ReplayPage(Page):
         if count is None and not text:
             self._problem.setText(translate("replay", "choose a folder first"))
             return
-        settings, number = self._session.settings, int(self.recipe.currentData())
-        path = self._session.folder if count is not None else Path(text)
+        settings, number = self._session.received.settings, int(self.recipe.currentData())
+        path = self._session.received.folder if count is not None else Path(text)
 
         def work(told: Told) -> Done | None:
             return _judged(for_recipe(settings, number), path, count, scale, told)

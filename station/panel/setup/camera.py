@@ -3,18 +3,16 @@
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from station.domain import Ring
-from station.errors import WeldgateError
 from station.events import LookEvent
 from station.panel.card import Facts, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
-from station.panel.setup.change import MIN_REASON, change
 from station.panel.setup.field import NumberField
 from station.panel.statistics.charts import Chart
 from station.panel.weld.pictures import drawn
 from station.panel.weld.weld_view import Drawn, WeldView
 from station.panel.words import data, translate
-from station.requests import Service
+from station.requests import MIN_REASON, Changed, HoldService
 from station.settings import PylonSettings, for_recipe
 from station.users import Level
 
@@ -27,6 +25,8 @@ class CameraPage(Page):
         self._session = session
         self._best = 0.0
         self._ring: Ring | None = None
+        self._saving = False
+        """Whether the engine has not yet answered to what was saved here."""
         self.live = QPushButton(translate("camera", "Live pictures"))
         self.live.setCheckable(True)
         self.live.clicked.connect(self._toggle)
@@ -70,70 +70,80 @@ class CameraPage(Page):
             field.changed.connect(self._look)
         self.reason.textChanged.connect(self._look)
         self.save.clicked.connect(self._save)
-        session.look_came.connect(self._on_look)
-        session.preview_came.connect(self._on_preview)
-        session.user_changed.connect(self._on_user)
-        session.settings_changed.connect(self._fill)
-        session.change_used.connect(self._on_used)
-        session.change_refused.connect(self._on_refused)
-        session.service_changed.connect(self._look)
+        session.received.look_came.connect(self._on_look)
+        session.received.preview_came.connect(self._on_preview)
+        session.account.changed.connect(self._on_user)
+        session.received.settings_changed.connect(self._fill)
+        session.change.used.connect(self._on_used)
+        session.change.refused.connect(self._on_refused)
+        session.service.changed.connect(self._look)
+        session.service.refused.connect(self._on_service_refused)
         self._fill()
 
     def _fill(self) -> None:
-        camera = self._session.settings.camera
+        camera = self._session.received.settings.camera
         if isinstance(camera, PylonSettings):
             self.exposure.set(camera.exposure_us)
             self.gain.set(camera.gain_db)
         self._look()
 
     def _on_user(self) -> None:
+        self._saving = False
         self.reason.clear()
         self.said.setText("")
         self._look()
 
     def _on_used(self) -> None:
-        if self.said.text():
+        self._fill()
+        if self._saving:
+            self._saving = False
+            self.reason.clear()
             self.said.setText(translate("camera", "saved and in use"))
 
-    def _on_refused(self) -> None:
-        self._fill()
-        self.said.setText("")
-        self.problem.setText(translate("camera", "the station refused the change (see its log), it was taken back"))
+    def _on_refused(self, why: str) -> None:
+        self._look()
+        if self._saving:
+            self._saving = False
+            self._fill()
+            self.said.setText("")
+            nothing = translate("camera", "nothing was changed:")
+            self.problem.setText(f"{nothing} {data(why)}")
 
     def _look(self) -> None:
-        session, camera = self._session, self._session.settings.camera
-        looking = session.service is not None and session.service.look
+        session, camera = self._session, self._session.received.settings.camera
+        looking = session.service.held is not None and session.service.held.look
         self.live.setChecked(looking)
-        self.live.setEnabled(session.may(Level.SETTER))
+        self.live.setEnabled(session.account.may(Level.SETTER))
         used = (camera.exposure_us, camera.gain_db) if isinstance(camera, PylonSettings) else None
         for field in (self.exposure, self.gain):
-            field.setEnabled(used is not None and session.may(Level.SETTER))
+            field.setEnabled(used is not None and session.account.may(Level.SETTER))
         changed = used is not None and (self.exposure.value, self.gain.value) != used
         well = changed and self.exposure.value is not None and self.gain.value is not None
-        self.save.setEnabled(well and session.may(Level.SETTER) and len(self.reason.text().strip()) >= MIN_REASON)
-        self.problem.setText("" if session.may(Level.SETTER) else translate("camera", "log in as setter first"))
-        if looking and session.user is not None and self.exposure.value is not None and self.gain.value is not None:
-            wanted = Service(0.0, session.user.name, look=True, exposure_us=self.exposure.value, gain_db=self.gain.value)
-            if wanted != session.service:
-                session.service = wanted  # said with the next renewal
+        allowed = session.account.may(Level.SETTER) and not session.change.waiting
+        self.save.setEnabled(well and allowed and len(self.reason.text().strip()) >= MIN_REASON)
+        self.problem.setText("" if session.account.may(Level.SETTER) else translate("camera", "log in as setter first"))
+        if looking and self.exposure.value is not None and self.gain.value is not None:
+            session.service.adjust(self.exposure.value, self.gain.value)
 
     def _toggle(self) -> None:
-        session = self._session
-        if session.service is not None and session.service.look:
-            session.end_service()
-        elif session.user is not None:
+        service = self._session.service
+        if service.held is not None and service.held.look:
+            service.end()
+        elif self._session.account.user is not None:
             self._best = 0.0
-            try:
-                session.serve(Service(0.0, session.user.name, look=True, exposure_us=self.exposure.value, gain_db=self.gain.value))
-            except WeldgateError as error:
-                self._look()
-                self.problem.setText(data(str(error)))
+            self._look()
+            self.live.setEnabled(False)  # until the engine has answered
+            service.hold(HoldService(look=True, exposure_us=self.exposure.value, gain_db=self.gain.value))
+
+    def _on_service_refused(self, why: str) -> None:
+        self._look()
+        self.problem.setText(data(why))
 
     def _on_look(self, event: LookEvent) -> None:
         self._ring = event.ring
         self._best = max(self._best, event.sharpness)
-        status = self._session.status
-        weld = for_recipe(self._session.settings, 1 if status is None else status.recipe).weld
+        status = self._session.received.status
+        weld = for_recipe(self._session.received.settings, 1 if status is None else status.recipe).weld
         expected = weld.radius_mm * 1000 / weld.um_per_px
         ring = event.ring
         self.facts.set(
@@ -146,30 +156,25 @@ class CameraPage(Page):
         self.histogram.show_counts(event.histogram, 0, 4)
         if event.problem:
             self.problem.setText(data(event.problem))
-        elif self._session.may(Level.SETTER):
+        elif self._session.account.may(Level.SETTER):
             self.problem.setText("")
 
     def _on_preview(self) -> None:
-        preview = self._session.look_preview
-        if preview is not None and self._session.service is not None:
+        preview = self._session.received.look_preview
+        if preview is not None and self._session.service.held is not None:
             plain = drawn(preview, None)
             self.weld.show_weld(Drawn(plain.image, plain.scale, plain.origin_px, self._ring, (), ()))
 
     def _save(self) -> None:
-        camera = self._session.settings.camera
+        camera = self._session.received.settings.camera
         if not isinstance(camera, PylonSettings) or self.exposure.value is None or self.gain.value is None:
             return
         used = {"exposure_us": (camera.exposure_us, self.exposure.value), "gain_db": (camera.gain_db, self.gain.value)}
-        new: dict[tuple[str, ...], tuple[object, object]] = {("camera", key): pair for key, pair in used.items() if pair[0] != pair[1]}
-        try:
-            told = change(self._session, Level.SETTER, new, self.reason.text())
-        except WeldgateError as error:
-            self.problem.setText(data(str(error)))
-            return
-        self.reason.clear()
-        self._fill()
-        about = translate("camera", "saved; the station is about to use it")
-        self.said.setText(about if told else translate("camera", "saved; no engine is there, it is used at the next start"))
+        new = [Changed(("camera", key), after, before) for key, (before, after) in used.items() if before != after]
+        self._saving = True
+        self.said.setText(translate("camera", "waiting for the engine"))
+        self._session.change.make(new, self.reason.text())
+        self._look()
 
     def close_page(self) -> None:
         """The session ends service mode."""

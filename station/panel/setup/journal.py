@@ -60,7 +60,7 @@ class JournalPage(Page):
         """Read it again."""
         kind = self.kind.currentData()
         try:
-            found = entries(self._session.folder, () if kind is None else (kind,), limit=SHOWN)
+            found = entries(self._session.received.folder, () if kind is None else (kind,), limit=SHOWN)
         except RecordError as error:
             self._problem.setText(str(error))
             return

@@ -4,13 +4,14 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFormLayout, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
-from station.accounts import log_in, save_user
-from station.errors import LoginError, RecordError
+from station.errors import RecordError
 from station.panel.card import Choice, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
+from station.panel.setup.login_view import Said, login_view, said
 from station.panel.words import data, translate
-from station.users import Level, users
+from station.requests import Answer
+from station.users import users
 
 
 class LoginPage(Page):
@@ -27,7 +28,7 @@ class LoginPage(Page):
         self.log_in, self.log_out = QPushButton(translate("login", "Log in")), QPushButton(translate("login", "Log out"))
         self.log_in.clicked.connect(self._log_in)
         self.pin.returnPressed.connect(self._log_in)
-        self.log_out.clicked.connect(lambda: session.log_out("asked to"))
+        self.log_out.clicked.connect(session.account.log_out)
         self._who, self.problem = label("", "title"), label("", "problem", wrap=True)
         form_box = QWidget()
         form = QFormLayout(form_box)
@@ -56,7 +57,7 @@ class LoginPage(Page):
         row.addStretch(1)
         row.addLayout(column)
         row.addStretch(1)
-        session.user_changed.connect(self._on_user)
+        session.account.changed.connect(self._on_user)
         self._on_user()
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
@@ -73,45 +74,39 @@ class LoginPage(Page):
             self.pin.insert(key)
 
     def _on_user(self) -> None:
-        user = self._session.user
+        user = self._session.account.user
         self.pin.clear()
         self.log_out.setEnabled(user is not None)
         self.problem.setText("")
         self._who.setText(translate("login", "nobody is logged in") if user is None else f"{user.name} · {data(user.level.name.lower())}")
         try:
-            known = users(self._session.folder)
+            known = users(self._session.received.folder)
         except RecordError as error:
             self.problem.setText(str(error))
             return
-        first = not known
-        self.log_in.setText(translate("login", "Become administrator") if first else translate("login", "Log in"))
+        view = login_view(known, self.name.currentText())
+        self.log_in.setText(translate("login", "Become administrator") if view.first else translate("login", "Log in"))
         self._hint.setText(
             translate("login", "Nobody is known yet: whoever gives a name and a PIN of at least 4 digits becomes administrator.")
-            if first
+            if view.first
             else translate("login", "Watching needs no login, doing does. Five wrong PINs lock a name for a minute.")
         )
-        chosen = self.name.currentText()
         self.name.clear()
-        self.name.addItems([user.name for user in known])
-        self.name.setEditText(chosen or (known[0].name if known else ""))
+        self.name.addItems(view.names)
+        self.name.setEditText(view.chosen)
 
     def _log_in(self) -> None:
         name, pin = self.name.currentText().strip(), self.pin.text()
         self.pin.clear()
-        folder = self._session.folder
-        try:
-            if not users(folder):
-                save_user(folder, name, name, Level.ADMIN, pin)
-            user = log_in(folder, name, pin)
-        except LoginError as error:
-            self.problem.setText(
-                translate("login", "locked for a minute after five wrong PINs") if error.locked_s else data(str(error).split(";")[0])
-            )
-            return
-        except RecordError as error:
-            self.problem.setText(str(error))
-            return
-        self._session.log_in(user)
+        self.log_in.setEnabled(False)
+        self._session.account.log_in(name, pin, self._on_answer, self)
+
+    def _on_answer(self, answer: Answer) -> None:
+        self.log_in.setEnabled(True)
+        if said(answer) is Said.LOCKED:
+            self.problem.setText(translate("login", "locked for a minute after five wrong PINs"))
+        elif said(answer) is Said.REFUSED:
+            self.problem.setText(data(answer.refusal))
 
     def close_page(self) -> None:
         """Nothing runs."""

@@ -1,17 +1,19 @@
 """Masters: parts known to be good or bad, when they were judged last, when they are due, and how it went."""
 
-from datetime import datetime, timedelta
+from datetime import UTC, datetime
 
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Row, Wanted, find
 from station.domain import Purpose
-from station.errors import RecordError, WeldgateError
+from station.errors import RecordError
 from station.panel.card import Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
+from station.panel.setup.masters_table import MasterState, master_rows
 from station.panel.words import data, translate
+from station.requests import Answer, CheckMaster
 from station.users import Level
 
 REFRESH_MS = 1500
@@ -61,7 +63,7 @@ class MastersPage(Page):
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._when_seen)
         self._timer.start(REFRESH_MS)
-        session.user_changed.connect(self.refresh)
+        session.account.changed.connect(self.refresh)
         self.refresh()
 
     def _when_seen(self) -> None:
@@ -70,51 +72,48 @@ class MastersPage(Page):
 
     def refresh(self) -> None:
         """Read the checks again."""
-        golden = self._session.settings.golden
+        golden = self._session.received.settings.golden
         try:
-            rows = find(self._session.folder, Wanted(purpose=Purpose.GOLDEN, newest_first=True, limit=LOG))
+            rows = find(self._session.received.folder, Wanted(purpose=Purpose.GOLDEN, newest_first=True, limit=LOG))
         except RecordError:
             rows = []  # no archive yet
-        last: dict[str, Row] = {}
-        for row in rows:
-            last.setdefault(row.serial, row)
-        shown = []
-        for serial, must in golden.masters.items():
-            check = last.get(serial)
-            at = None if check is None else datetime.fromisoformat(check.grabbed_at).astimezone()
-            due = None if at is None or golden.due_h is None else at + timedelta(hours=golden.due_h)
-            late = golden.due_h is not None and (due is None or due < datetime.now().astimezone())
-            wrong = check is not None and check.verdict != must
-            state = "✗ " + translate("masters", "WRONG") if wrong else "⚠ " + translate("masters", "DUE") if late else "✓" if check else "–"
-            found = "–" if check is None else check.verdict
-            shown.append(
-                (serial, must, found, "–" if at is None else f"{at:%d.%m. %H:%M}", "–" if due is None else f"{due:%d.%m. %H:%M}", state)
-            )
+        states = {
+            MasterState.WRONG: "✗ " + translate("masters", "WRONG"),
+            MasterState.DUE: "⚠ " + translate("masters", "DUE"),
+            MasterState.RIGHT: "✓",
+            MasterState.UNKNOWN: "–",
+        }
+        known = master_rows(golden.masters, golden.due_h, rows, datetime.now(UTC))
+        shown = [(m.serial, m.expected, m.found or "–", _local(m.checked), _local(m.due), states[m.state]) for m in known]
         self.masters.fill(shown)
         times = (datetime.fromisoformat(row.grabbed_at).astimezone() for row in rows)
         self.log.fill([(f"{at:%d.%m.%Y %H:%M:%S}", r.serial, _judged(r), str(r.inspection_id)) for at, r in zip(times, rows, strict=True)])
-        self.check.setEnabled(self._session.may(Level.SETTER) and bool(shown))
+        self.check.setEnabled(self._session.account.may(Level.SETTER) and bool(shown))
         none = translate("masters", "no masters are named; write [golden.masters] into the settings file")
         self.problem.setText(
-            none if not shown else "" if self._session.may(Level.SETTER) else translate("masters", "log in as setter to judge")
+            none if not shown else "" if self._session.account.may(Level.SETTER) else translate("masters", "log in as setter to judge")
         )
 
     def _check(self) -> None:
-        row, masters = self.masters.currentRow(), list(self._session.settings.golden.masters)
+        row, masters = self.masters.currentRow(), list(self._session.received.settings.golden.masters)
         if not 0 <= row < len(masters):
             self.problem.setText(translate("masters", "choose a master first"))
             return
-        try:
-            told = self._session.test_picture(masters[row])
-        except WeldgateError as error:
-            self.problem.setText(data(str(error)))
-            return
-        if not told:
-            self.problem.setText(translate("masters", "no engine is there"))
+        self.check.setEnabled(False)
+        self._session.account.ask(CheckMaster(masters[row]), self._on_answer, self)
+
+    def _on_answer(self, answer: Answer) -> None:
+        self.refresh()
+        if not answer.done:
+            self.problem.setText(data(answer.refusal))
 
     def close_page(self) -> None:
         """Stop following."""
         self._timer.stop()
+
+
+def _local(at: datetime | None) -> str:
+    return "–" if at is None else f"{at.astimezone():%d.%m. %H:%M}"
 
 
 def _judged(row: Row) -> str:

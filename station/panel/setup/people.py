@@ -1,15 +1,13 @@
 """Who may log in, and at which level; for administrators."""
 
-from collections.abc import Callable
-
 from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
-from station.accounts import remove_user, save_user
-from station.errors import LoginError, RecordError
+from station.errors import RecordError
 from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
 from station.panel.words import data, translate
+from station.requests import Answer, RemoveUser, SaveUser
 from station.users import Level, users
 
 
@@ -54,18 +52,18 @@ class PeoplePage(Page):
         """Whose removal was asked for once."""
         self.name.textChanged.connect(self._unsure)
         self.table.currentCellChanged.connect(self._on_chosen)
-        session.user_changed.connect(self.pin.clear)
-        session.user_changed.connect(self._unsure)
-        session.user_changed.connect(self.refresh)
+        session.account.changed.connect(self.pin.clear)
+        session.account.changed.connect(self._unsure)
+        session.account.changed.connect(self.refresh)
         self.refresh()
 
     def refresh(self) -> None:
         """Read the users again."""
-        admin = self._session.may(Level.ADMIN)
+        admin = self._session.account.may(Level.ADMIN)
         for widget in (self.save, self.remove, self.name, self.level, self.pin):
             widget.setEnabled(admin)
         try:
-            self.table.fill([(user.name, data(user.level.name.lower())) for user in users(self._session.folder)])
+            self.table.fill([(user.name, data(user.level.name.lower())) for user in users(self._session.received.folder)])
             self.problem.setText("" if admin else translate("people", "log in as administrator first"))
         except RecordError as error:
             self.problem.setText(str(error))
@@ -77,7 +75,8 @@ class PeoplePage(Page):
             self.level.setCurrentText(texts[row][1])
 
     def _save(self) -> None:
-        self._do(lambda by: save_user(self._session.folder, by, self.name.text(), self.level.currentData(), self.pin.text()))
+        level = Level(self.level.currentData())
+        self._ask(SaveUser(self.name.text().strip(), level, self.pin.text()))
         self.pin.clear()
 
     def _unsure(self) -> None:
@@ -91,20 +90,19 @@ class PeoplePage(Page):
             self.remove.setText(translate("people", "Really remove?"))
             return
         self._unsure()
-        self._do(lambda by: remove_user(self._session.folder, by, name))
+        self._ask(RemoveUser(name))
 
-    def _do(self, work: Callable[[str], object]) -> None:
-        user = self._session.user
-        if user is None or not self._session.may(Level.ADMIN):
-            return
-        try:
-            work(user.name)
-        except (LoginError, RecordError) as error:
-            self.problem.setText(data(str(error)))
-            return
-        if self.name.text().strip() == user.name:  # their own level or PIN
-            self._session.log_out("user changed")
+    def _ask(self, request: SaveUser | RemoveUser) -> None:
+        if self._session.account.may(Level.ADMIN):
+            for button in (self.save, self.remove):
+                button.setEnabled(False)
+            self._session.account.ask(request, self._on_answer, self)
+
+    def _on_answer(self, answer: Answer) -> None:
+        self._session.account.renew()  # their own level or PIN may have changed
         self.refresh()
+        if not answer.done:
+            self.problem.setText(data(answer.refusal))
 
     def close_page(self) -> None:
         """Nothing runs."""

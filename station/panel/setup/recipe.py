@@ -1,48 +1,23 @@
 """Limits of a recipe: what they would have done to the parts of the archive is shown before they can be saved, with a reason."""
 
-from dataclasses import dataclass, replace
-
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
-from station.archive.reader import Wanted, find, read_words
 from station.archive.whatif import WhatIf, what_if
 from station.classify.onnx import Classifier
-from station.classify.thresholds import Limit, Thresholds, in_use
 from station.defects import KINDS
-from station.errors import ModelError, SettingsError, WeldgateError
+from station.errors import ModelError, SettingsError
 from station.panel.card import Choice, Table, label, titled
 from station.panel.page import Page
 from station.panel.session import Session
-from station.panel.setup.change import MIN_REASON, change
 from station.panel.setup.field import NumberField, SegmentLimits
+from station.panel.setup.limit_fields import FIELDS, MIN_MM, THRESHOLD, limits_in_use, place_of, quality_of, thresholds_of
+from station.panel.setup.what_if_state import Missing, Values, WhatIfState, scored_records
 from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
-from station.records import Record
-from station.settings import Settings, for_recipe
+from station.requests import Changed
+from station.settings import for_recipe
 from station.users import Level
-
-PARTS = 5000
-"""The newest parts that are scored again."""
-FIELDS = {
-    **{f"limits.{kind.name}.threshold": ("model", 0.01, 0.99) for kind in KINDS},
-    **{f"limits.{kind.name}.min_mm": ("model", 0.0, 5.0) for kind in KINDS},
-    "min_mean_dn": ("quality", 0.0, 255.0),
-    "max_dark_share": ("quality", 0.0, 1.0),
-    "max_saturated_share": ("quality", 0.0, 1.0),
-    "min_sharpness": ("quality", 0.0, 10.0),
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Values:
-    """What stands in the fields."""
-
-    recipe: int
-    limits: dict[str, float]
-    """By key."""
-    segments: dict[int, float]
-    """By number."""
 
 
 class RecipePage(Page):
@@ -51,23 +26,24 @@ class RecipePage(Page):
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self._in_use: Values | None = None
-        self._asked: Values | None = None
-        """Values of the what-if that is shown."""
+        self._state = WhatIfState()
+        self._saving = False
+        """Whether the engine has not yet answered to what was saved here."""
         self.recipe = Choice()
         word = translate("recipe", "recipe")
-        for number in sorted({1, *session.settings.recipes}):
+        for number in sorted({1, *session.received.settings.recipes}):
             self.recipe.addItem(f"{word} {number}", number)
         threshold, length = translate("recipe", "{kind}: threshold"), translate("recipe", "{kind}: minimum length (mm)")
         names = {
-            **{f"limits.{kind.name}.threshold": threshold.format(kind=data(kind.reason)) for kind in KINDS},
-            **{f"limits.{kind.name}.min_mm": length.format(kind=data(kind.reason)) for kind in KINDS},
+            **{THRESHOLD.format(kind.name): threshold.format(kind=data(kind.reason)) for kind in KINDS},
+            **{MIN_MM.format(kind.name): length.format(kind=data(kind.reason)) for kind in KINDS},
             "min_mean_dn": translate("recipe", "least brightness"),
             "max_dark_share": translate("recipe", "greatest dark share"),
             "max_saturated_share": translate("recipe", "greatest saturated share"),
             "min_sharpness": translate("recipe", "least sharpness"),
         }
         self.fields = {key: NumberField(low, high) for key, (_, low, high) in FIELDS.items()}
+        self._names: dict[str, QLabel] = {}
         self.segments = SegmentLimits()
         self.segments.changed.connect(self._look)
         heads = (
@@ -88,7 +64,8 @@ class RecipePage(Page):
         form.setVerticalSpacing(2)
         form.addWidget(self.recipe, 0, 0, 1, 2)
         for place, (key, name) in enumerate(names.items(), 1):
-            form.addWidget(label(name), place, 0)
+            self._names[key] = label(name)
+            form.addWidget(self._names[key], place, 0)
             form.addWidget(self.fields[key], place, 1)
             self.fields[key].changed.connect(self._look)
         form.addWidget(label(translate("recipe", "limits of single segments")), len(names) + 1, 0)
@@ -115,95 +92,91 @@ class RecipePage(Page):
         self.recipe.currentIndexChanged.connect(self._fill)
         self._work.done.connect(self._on_done)
         self._work.failed.connect(self.problem.setText)
-        session.user_changed.connect(self._on_user)
-        session.settings_changed.connect(self._on_settings)
-        session.change_used.connect(self._on_used)
-        session.change_refused.connect(self._on_refused)
+        session.account.changed.connect(self._on_user)
+        session.received.settings_changed.connect(self._on_settings)
+        session.change.used.connect(self._on_used)
+        session.change.refused.connect(self._on_refused)
+        session.change.asked.connect(self._look)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         """The limits of a model are in its file: loaded once they are looked at."""
-        if self._in_use is None:
+        if self._state.in_use is None:
             self._fill()
         super().showEvent(event)
 
     def _on_settings(self) -> None:
-        if self._in_use is not None:
+        if self._state.in_use is not None:
             self._fill()
 
     def _fill(self) -> None:
         """The limits in use."""
         number = int(self.recipe.currentData())
-        settings = for_recipe(self._session.settings, number)
+        settings = for_recipe(self._session.received.settings, number)
         try:
-            self._in_use = Values(number, _limits(settings), dict(settings.model.segment_thresholds))
+            self._state.in_use = Values(number, limits_in_use(settings), dict(settings.model.segment_thresholds))
         except (ModelError, SettingsError) as error:
             self.problem.setText(str(error))
             return
-        self.segments.set(self._in_use.segments)
+        self.segments.set(self._state.in_use.segments)
         for key, field in self.fields.items():
-            field.set(self._in_use.limits[key])
+            known = key in self._state.in_use.limits
+            if known:
+                field.set(self._state.in_use.limits[key])
+            for widget in (field, self._names[key]):
+                widget.setVisible(known)
         self._look()
 
     def values(self) -> Values | None:
         """What stands in the fields; None if something is not allowed."""
-        numbers = {key: field.value for key, field in self.fields.items() if field.value is not None}
+        used = self._state.in_use
+        keys = FIELDS if used is None else used.limits
+        numbers = {key: value for key in keys if (value := self.fields[key].value) is not None}
         segments = self.segments.value
-        return None if len(numbers) < len(FIELDS) or segments is None else Values(int(self.recipe.currentData()), numbers, segments)
+        return None if len(numbers) < len(keys) or segments is None else Values(int(self.recipe.currentData()), numbers, segments)
 
     def _on_user(self) -> None:
         """What one has typed and seen is not for the next."""
         self._work.cancel()
+        self._saving = False
         self.reason.clear()
         self._forget()
         self._look()
 
     def _forget(self) -> None:
         """What other values would have done."""
-        self._asked = None
+        self._state.asked = None
         self.said.setText("")
         for table in (self.released, self.refused):
             table.fill(())
 
     def _look(self) -> None:
         values = self.values()
-        if self._asked is not None and values != self._asked:
+        if self._state.asked is not None and values != self._state.asked:
             self._forget()
-        used = self._in_use
-        changed = used is not None and values is not None and values != replace(used, limits=_rounded(used.limits))
+        changed = self._state.changed(values)
         self.ask.setEnabled(changed and not self._work.busy)
-        allowed = self._session.may(Level.QUALITY)
-        self.save.setEnabled(changed and allowed and values == self._asked and len(self.reason.text().strip()) >= MIN_REASON)
-        hints = (
-            (not allowed, translate("recipe", "log in as quality to save")),
-            (changed and values != self._asked, translate("recipe", "ask what if before saving")),
-            (changed and len(self.reason.text().strip()) < MIN_REASON, translate("recipe", "a reason is needed")),
-        )
-        self.save.setToolTip(next((text for needed, text in hints if needed), ""))
+        session = self._session
+        missing = self._state.missing(values, self.reason.text(), session.account.may(Level.QUALITY), session.change.waiting)
+        self.save.setEnabled(missing is Missing.NOTHING)
+        hints = {
+            Missing.LOGIN: translate("recipe", "log in as quality to save"),
+            Missing.QUESTION: translate("recipe", "ask what if before saving"),
+            Missing.REASON: translate("recipe", "a reason is needed"),
+            Missing.ANSWER: translate("recipe", "waiting for the engine"),
+        }
+        self.save.setToolTip(hints.get(missing, ""))
 
     def _ask(self) -> None:
-        values, folder = self.values(), self._session.folder
+        values, folder = self.values(), self._session.received.folder
         if values is None:
             return
-        new, settings = values.limits, for_recipe(self._session.settings, values.recipe)
-        quality = settings.quality.model_copy(update={k: v for k, v in new.items() if FIELDS[k][0] == "quality"})
-        limits = tuple(
-            Limit(kind, new[f"limits.{kind.name}.threshold"], new[f"limits.{kind.name}.min_mm"])
-            for kind in KINDS
-            if f"limits.{kind.name}.threshold" in new
-        )
-        thresholds = Thresholds(limits, tuple(sorted(values.segments.items())))
+        settings = for_recipe(self._session.received.settings, values.recipe)
+        thresholds, quality = thresholds_of(values), quality_of(values, settings)
 
         def work(told: Told) -> tuple[Values, WhatIf, int] | None:
             judge = Classifier(settings.model.path, 1).card.file_hash
-            rows = find(folder, Wanted(recipe=values.recipe, newest_first=True, limit=PARTS))
-            records = list[Record]()
-            for count, row in enumerate(rows):
-                if count % 20 == 0 and not told(count, len(rows)):
-                    return None
-                record, _ = read_words(folder, row)
-                if record is not None and record.provenance.model_hash == judge:  # scores of another model say nothing
-                    records.append(record)
-            return values, what_if(records, thresholds, quality), len(rows) - len(records)
+            found = scored_records(folder, values.recipe, judge, told)
+            return None if found is None else (values, what_if(found[0], thresholds, quality), found[1])
 
         self._work.start(translate("recipe", "scoring the archive again"), work)
         self._look()
@@ -212,7 +185,7 @@ class RecipePage(Page):
         if not isinstance(answer, tuple) or answer[0] != self.values():
             self._look()
             return
-        self._asked, found, left_out = answer
+        self._state.asked, found, left_out = answer
         for table, flips in ((self.released, found.released), (self.refused, found.refused)):
             rows = [(str(f.inspection_id), f.serial, str(f.before), str(f.after), str(f.segment), f"{f.score:.3f}") for f in flips]
             table.fill(rows)
@@ -229,50 +202,39 @@ class RecipePage(Page):
         self._look()
 
     def _save(self) -> None:
-        values, used = self.values(), self._in_use
+        values, used = self.values(), self._state.in_use
         if values is None or used is None:
             return
-        recipe, before = str(values.recipe), _rounded(used.limits)
-        new: dict[tuple[str, ...], tuple[object, object]] = {}
+        before = used.rounded().limits
+        new: list[Changed] = []
         for key, value in values.limits.items():
             if value != before[key]:
-                new["recipes", recipe, FIELDS[key][0], *key.split(".")] = (used.limits[key], value)
+                new.append(Changed(place_of(key, values.recipe), value, used.limits[key]))
         if values.segments != used.segments:
-            new["recipes", recipe, "model", "segment_thresholds"] = (used.segments, values.segments)
-        try:
-            told = change(self._session, Level.QUALITY, new, self.reason.text())
-        except WeldgateError as error:
-            self.problem.setText(data(str(error)))
-            return
-        self.reason.clear()
-        self.problem.setText("" if told else translate("recipe", "saved; no engine is there, it is used at the next start"))
-        self._fill()
+            new.append(Changed(("recipes", str(values.recipe), "model", "segment_thresholds"), values.segments, used.segments))
+        self._saving = True
+        self.problem.setText("")
         self._forget()
-        self.said.setText(translate("recipe", "saved; the station is about to use it") if told else "")
+        self.said.setText(translate("recipe", "waiting for the engine"))
+        self._session.change.make(new, self.reason.text())
 
     def _on_used(self) -> None:
-        if self.said.text() and self._asked is None:
+        if self._saving:
+            self._saving = False
+            self.reason.clear()
+            self._fill()
             self.said.setText(translate("recipe", "saved and in use"))
+        self._look()
 
-    def _on_refused(self) -> None:
-        self._fill()
-        self.said.setText("")
-        self.problem.setText(translate("recipe", "the station refused the change (see its log), it was taken back"))
+    def _on_refused(self, why: str) -> None:
+        if self._saving:
+            self._saving = False
+            self._fill()
+            self.said.setText("")
+            nothing = translate("recipe", "nothing was changed:")
+            self.problem.setText(f"{nothing} {data(why)}")
+        self._look()
 
     def close_page(self) -> None:
         """Nothing is left running."""
         self._work.close_work()
-
-
-def _rounded(limits: dict[str, float]) -> dict[str, float]:
-    """As the fields show them."""
-    return {key: float(f"{value:.6g}") for key, value in limits.items()}
-
-
-def _limits(settings: Settings) -> dict[str, float]:
-    """Return the limits in use: of the settings, else of the model. Raises ModelError, SettingsError."""
-    model, quality = settings.model, settings.quality
-    used = in_use(Classifier(model.path, 1).card.thresholds, model.limits, model.segment_thresholds)
-    values = {f"limits.{limit.kind.name}.threshold": limit.threshold for limit in used.kinds}
-    values |= {f"limits.{limit.kind.name}.min_mm": limit.min_mm for limit in used.kinds}
-    return values | {key: float(getattr(quality, key)) for key, (section, _, _) in FIELDS.items() if section == "quality"}

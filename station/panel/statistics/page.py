@@ -10,7 +10,6 @@ from station.archive.reader import Wanted, find, read_records, read_words
 from station.archive.schema import NAME as INDEX
 from station.archive.statistics import Summary, summarise
 from station.domain import Verdict
-from station.errors import WeldgateError
 from station.panel.card import Choice, Table, label, titled
 from station.panel.dialogs import ask_file
 from station.panel.page import Page
@@ -21,6 +20,7 @@ from station.panel.words import data, translate
 from station.panel.work import Told, WorkBar
 from station.records import Record
 from station.report.page import report
+from station.requests import Answer, ResetCounts
 from station.settings import for_recipe
 from station.users import Level
 
@@ -49,7 +49,7 @@ class StatisticsPage(Page):
         self._work.done.connect(self._on_done)
         self._work.failed.connect(self._problem.setText)
         self.how_many.currentIndexChanged.connect(self.read)
-        session.user_changed.connect(self._on_user)
+        session.account.changed.connect(self._on_user)
         self._on_user()
         self._first = QTimer(self)
         self._first.setInterval(300)
@@ -101,18 +101,18 @@ class StatisticsPage(Page):
         rows.addLayout(grid, 1)
 
     def _on_user(self) -> None:
-        hint = "" if self._session.may(Level.OPERATOR) else translate("statistics", "log in first (page Setup)")
+        hint = "" if self._session.account.may(Level.OPERATOR) else translate("statistics", "log in first (page Setup)")
         self.report.setEnabled(not hint)
         self.report.setToolTip(hint)
-        self.zero.setEnabled(self._session.may(Level.SETTER))
+        self.zero.setEnabled(self._session.account.may(Level.SETTER))
 
     def _reset(self) -> None:
-        try:
-            told = self._session.reset_counts()
-        except WeldgateError as error:
-            self._problem.setText(data(str(error)))
-            return
-        self._problem.setText("" if told else translate("statistics", "no engine is there"))
+        self.zero.setEnabled(False)
+        self._session.account.ask(ResetCounts(), self._on_reset, self)
+
+    def _on_reset(self, answer: Answer) -> None:
+        self._problem.setText(data(answer.refusal) if answer.refusal else "")
+        self._on_user()
 
     def _when_seen(self) -> None:
         if self.isVisible():
@@ -121,7 +121,7 @@ class StatisticsPage(Page):
 
     def read(self) -> None:
         """Read the records of the chosen parts, beside the window."""
-        folder, limit = self._session.folder, int(self.how_many.currentData())
+        folder, limit = self._session.received.folder, int(self.how_many.currentData())
         self._work.start(translate("statistics", "reading records"), lambda told: summarise(_records(folder, limit, told)))
 
     def _on_done(self, summary: object) -> None:
@@ -134,8 +134,8 @@ class StatisticsPage(Page):
         self.clock.show_counts(summary.segments)
         self.reasons.show_bars([(data(name), count) for name, count in summary.reasons[:5]])
         bad = [p.verdict is not Verdict.OK for p in summary.points]
-        status = self._session.status
-        s = for_recipe(self._session.settings, 1 if status is None else status.recipe)
+        status = self._session.received.status
+        s = for_recipe(self._session.received.settings, 1 if status is None else status.recipe)
         limits: dict[str, list[float]] = {
             "worst": list(summary.thresholds),
             "mean_dn": [s.quality.min_mean_dn],
@@ -154,7 +154,7 @@ class StatisticsPage(Page):
 
     def write_report(self, target: Path) -> None:
         """The chosen parts as one HTML file."""
-        folder, limit = self._session.folder, int(self.how_many.currentData())
+        folder, limit = self._session.received.folder, int(self.how_many.currentData())
 
         def work(told: Told) -> str:
             entries = []

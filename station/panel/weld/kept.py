@@ -13,7 +13,7 @@ from station.classify.onnx import Classifier
 from station.domain import STRIP_COLUMNS, Image, Inspection
 from station.errors import ImageError, LocateError
 from station.imagefile import read_image
-from station.panel.session import THUMB_PX
+from station.panel.received import THUMB_PX
 from station.panel.weld.pictures import strip_image
 from station.panel.weld.weld_view import Drawn
 from station.preview import make_preview

@@ -1,0 +1,214 @@
+"""What pages decide, without a window: login, requests that wait, search, what-if, masters, the lamp's foot."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from station.archive.reader import Row
+from station.archive.review import Opinion, Review, State
+from station.panel.history.search import FOUND, MIN_SCORE, SEARCHED, TO_CONFIRM, Search
+from station.panel.live.lamp_state import foot
+from station.panel.login_state import LoginState
+from station.panel.pending import NO_CONNECTION, PATIENCE_S, Pending
+from station.panel.setup.login_view import Said, login_view, said
+from station.panel.setup.masters_table import MasterState, master_rows
+from station.panel.setup.what_if_state import Missing, Values, WhatIfState
+from station.requests import MIN_REASON, Answer
+from station.users import Level, User
+from tests.conftest import ROOT
+from tests.panel.made import part
+from tests.parts import ok_inspection
+
+NOW = datetime(2026, 11, 27, 12, tzinfo=UTC)
+PURE = (
+    "station.panel.history.search",
+    "station.panel.live.lamp_state",
+    "station.panel.login_state",
+    "station.panel.pending",
+    "station.panel.setup.login_view",
+    "station.panel.setup.masters_table",
+    "station.panel.setup.what_if_state",
+)
+
+
+def row(number: int = 1, verdict: str = "NOK", purpose: str = "part", serial: str = "M", at: datetime = NOW) -> Row:
+    return Row(number, serial, 1, at.isoformat(), verdict, None, 0.9, None, "kept", "r.json", "", True, purpose, 1, None)
+
+
+def test_what_pages_decide_needs_no_qt() -> None:
+    code = f"import sys, importlib\nfor name in {PURE}: importlib.import_module(name)\nassert 'PySide6' not in sys.modules\n"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+# a login is what the engine says
+
+
+@given(st.sampled_from(list(Level)), st.sampled_from(list(Level)))
+def test_a_login_may_what_its_level_may_until_the_engine_says_otherwise(level: Level, asked: Level) -> None:
+    state = LoginState()
+    assert not state.may(Level.OPERATOR)
+    assert not state.begun(Answer(1, "unknown name or wrong PIN"))
+    assert state.begun(Answer(2, logged_in=True, token="t", name="Ada", level=level))
+    assert state.may(asked) is (level >= asked)
+    assert not state.over_by("t", Answer(3, logged_in=True))
+    assert not state.over_by("t", Answer(3, NO_CONNECTION)), "the engine may come back"
+    assert not state.over_by("of the login before", Answer(3, "a login is needed"))
+    assert state.over_by("t", Answer(3, "a login is needed"))
+    assert state.ended()
+    assert not state.ended()
+    assert not state.may(Level.OPERATOR)
+    assert not state.over_by("", Answer(4, "a login is needed")), "there is none that could end"
+
+
+def test_a_touch_is_said_once() -> None:
+    state = LoginState()
+    state.touched()
+    assert not state.take_touched(), "nobody is logged in"
+    state.begun(Answer(1, logged_in=True, token="t", name="Ada", level=Level.ADMIN))
+    state.touched()
+    assert [state.take_touched(), state.take_touched()] == [True, False]
+
+
+def test_the_login_page_offers_whom_the_station_knows() -> None:
+    assert login_view([], "").first
+    known = [User("Ada", Level.ADMIN), User("Bob", Level.OPERATOR)]
+    assert login_view(known, "").chosen == "Ada"
+    assert login_view(known, "Bo").chosen == "Bo"
+    assert login_view(known, "").names == ("Ada", "Bob")
+    assert said(Answer(1, logged_in=True)) is Said.NOTHING
+    assert said(Answer(1, "Ada is locked for 43 s more after 5 wrong PINs", locked_s=43.0)) is Said.LOCKED
+    assert said(Answer(1, "unknown name or wrong PIN")) is Said.REFUSED
+
+
+# each request has one answer
+
+
+@given(st.lists(st.sampled_from(["ask", "answer", "wait"]), max_size=40))
+def test_each_request_is_answered_once_by_the_engine_or_given_up(steps: list[str]) -> None:
+    pending, now, came = Pending(), 0.0, dict[int, int]()
+    waiting: list[int] = []
+    for step in steps:
+        if step == "ask":
+            number = pending.begin(lambda answer: came.__setitem__(answer.request_id, came.get(answer.request_id, 0) + 1), now)
+            waiting.append(number)
+        elif step == "answer" and waiting:
+            answer = Answer(waiting.pop(0))
+            then = pending.answered(answer, now)
+            assert then is not None
+            then(answer)
+            assert pending.answered(answer, now) is None, "an answer that comes twice is heard once"
+        else:
+            now += 1.0
+        for number in pending.lost(now):
+            then = pending.given_up(number)
+            assert then is not None
+            then(Answer(number, NO_CONNECTION))
+            waiting.remove(number)
+    now += PATIENCE_S + 1
+    assert pending.lost(now) == waiting
+    assert all(count == 1 for count in came.values())
+
+
+def test_a_change_may_last_as_long_as_the_engine_answers_others() -> None:
+    pending = Pending()
+    change = pending.begin(lambda _: None, 0.0)
+    for second in range(60):
+        renewal = pending.begin(lambda _: None, float(second))
+        pending.answered(Answer(renewal), float(second))
+        assert pending.lost(float(second)) == []
+    assert pending.lost(59.0 + PATIENCE_S + 0.1) == [change]
+
+
+# what is looked for
+
+
+def test_a_search_asks_the_archive_for_what_the_fields_say() -> None:
+    anything = Search().wanted(NOW)
+    assert (anything.serial, anything.since, anything.until, anything.limit) == (None, None, None, FOUND)
+    wanted = Search(serial=" A* ", hours=8, segment=3, state=str(State.ONE)).wanted(NOW)
+    assert (wanted.serial, wanted.since, wanted.min_score) == ("A*", NOW - timedelta(hours=8), MIN_SCORE)
+    assert wanted.limit == SEARCHED, "the state of a review is not in the index"
+    between = Search(since=NOW - timedelta(days=2), until=NOW - timedelta(days=1)).wanted(NOW)
+    assert (between.since, between.until) == (NOW - timedelta(days=2), NOW - timedelta(days=1))
+
+
+OPINIONS = st.dictionaries(st.sampled_from(["Ada", "Bob", "Cy"]), st.sampled_from([Opinion.RIGHT, Opinion.FALSE_CALL]))
+
+
+@given(OPINIONS, st.sampled_from(["OK", "NOK", "ERROR"]), st.sampled_from(["part", "golden", "test"]))
+def test_every_part_has_one_state_and_only_nok_parts_wait_to_be_confirmed(opinions: dict[str, Opinion], verdict: str, purpose: str) -> None:
+    review, found = Review(opinions), row(verdict=verdict, purpose=purpose)
+    assert [Search(state=str(state)).fits(found, review) for state in State].count(True) == 1
+    assert Search().fits(found, review)
+    waits = Search(state=TO_CONFIRM).fits(found, review)
+    assert waits is (verdict == "NOK" and purpose == "part" and review.state is not State.AGREED)
+
+
+# masters
+
+
+@pytest.mark.parametrize(
+    ("verdict", "age_h", "due_h", "state"),
+    [
+        (None, 0, None, MasterState.UNKNOWN),
+        (None, 0, 24, MasterState.DUE),
+        ("NOK", 1, 24, MasterState.RIGHT),
+        ("NOK", 25, 24, MasterState.DUE),
+        ("NOK", 999, None, MasterState.RIGHT),
+        ("OK", 25, 24, MasterState.WRONG),
+        ("ERROR", 1, None, MasterState.WRONG),
+    ],
+)
+def test_how_a_master_stands(verdict: str | None, age_h: float, due_h: float | None, state: MasterState) -> None:
+    at = NOW - timedelta(hours=age_h)
+    older = row(1, "ERROR", "golden", at=at - timedelta(hours=1))
+    checks = [] if verdict is None else [row(2, verdict, "golden", at=at), older]
+    (master,) = master_rows({"M": "NOK"}, due_h, checks, NOW)
+    assert (master.state, master.found) == (state, verdict)
+    assert master.due == (None if due_h is None or verdict is None else at + timedelta(hours=due_h))
+
+
+# other limits
+
+
+USED = Values(1, {"limits.hole.threshold": 0.4612345678, "min_sharpness": 0.01})
+LIMITS = st.builds(
+    Values, st.just(1), st.fixed_dictionaries({"limits.hole.threshold": st.floats(0.01, 0.99), "min_sharpness": st.just(0.01)})
+)
+
+
+@given(LIMITS, st.one_of(st.none(), LIMITS), st.text(max_size=8), st.booleans(), st.booleans())
+def test_limits_are_saved_only_by_who_may_after_what_if_with_a_reason(
+    values: Values, asked: Values | None, reason: str, allowed: bool, waiting: bool
+) -> None:
+    state = WhatIfState()
+    state.in_use, state.asked = USED, asked
+    free = state.missing(values, reason, allowed, waiting) is Missing.NOTHING
+    enough = len(reason.strip()) >= MIN_REASON
+    assert free is (allowed and not waiting and enough and values == asked and values != USED.rounded())
+
+
+def test_what_the_fields_round_is_no_change() -> None:
+    state = WhatIfState()
+    assert not state.changed(USED), "nothing is known to be in use"
+    state.in_use = USED
+    assert not state.changed(USED.rounded())
+    assert state.changed(replace(USED.rounded(), segments={3: 0.6}))
+    assert not state.changed(None)
+
+
+# the lamp
+
+
+@pytest.mark.parametrize(
+    ("age_s", "shown"), [(1, "S1 · 1 s"), (119, "S1 · 119 s"), (121, "S1 · 2 min"), (8000, "S1 · 2 h"), (2e5, "S1 · 2 d")]
+)
+def test_the_foot_of_the_lamp_says_how_old_it_is(age_s: float, shown: str) -> None:
+    assert foot(part(ok_inspection(), at_s=100.0), 100.0 + age_s) == shown
+    assert foot(None, 5.0) == ""

@@ -1,0 +1,174 @@
+"""Windows and the engine over the real channel: each request is answered, whoever is killed, floods or comes second."""
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import zmq
+
+from deploy.demo import free_ports, station_toml
+from station import adjustments, orders, released
+from station.archive.journal import Kind, entries
+from station.archive.schema import open_index
+from station.channel import MAX_BYTES
+from station.orders import UseSettings
+from station.recipe import prepare
+from station.requests import (
+    Acknowledge,
+    Changed,
+    ChangeSettings,
+    HoldService,
+    LogIn,
+    LogOut,
+    ReloadSettings,
+    ResetCounts,
+    StayLoggedIn,
+    TakeTestImage,
+)
+from station.settings_file import load
+from station.users import Level
+from tests.desk import PIN, Desk, PlainWindow
+
+SHARPNESS = ("recipes", "1", "quality", "min_sharpness")
+OLD, NEW = {}, {"recipes": {"1": {"quality": {"min_sharpness": 0.02}}}}
+CHANGE = ChangeSettings((Changed(SHARPNESS, 0.02),), "trial of the limit")
+
+
+@pytest.fixture
+def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    made = tmp_path / "station.toml"
+    made.write_text(station_toml(tmp_path / "records", *free_ports(4)))
+    (tmp_path / "records").mkdir()
+    open_index(tmp_path / "records").close()
+    loaded = prepare(load(made), 1)
+    monkeypatch.setattr(released, "prepare", lambda _settings, _number: loaded)
+    return made
+
+
+@pytest.fixture
+def desk(path: Path) -> Iterator[Desk]:
+    made = Desk(path)
+    made.knows("Quentin", Level.QUALITY)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def window(desk: Desk) -> Iterator[PlainWindow]:
+    made = PlainWindow(desk.path)
+    assert made.ask(LogIn("Quentin", PIN)).done
+    yield made
+    made.close()
+
+
+def settings_noted(desk: Desk) -> list[tuple[str, str, str]]:
+    found = entries(desk.released.settings.archive.folder, (Kind.SETTING,), newest_first=False)
+    return [(e.who, e.after, e.reason) for e in found]
+
+
+def test_a_change_is_answered_once_it_is_in_use(desk: Desk, window: PlainWindow) -> None:
+    assert window.ask(CHANGE).done
+    assert adjustments.read(desk.path) == NEW
+    assert len(desk.used) == 1
+    refused = window.ask(ChangeSettings((Changed(SHARPNESS, -1.0),), "trial of the limit"))
+    assert "greater than or equal to 0" in refused.refusal
+    assert "\n" not in refused.refusal
+    assert adjustments.read(desk.path) == NEW
+
+
+def test_a_window_killed_in_any_step_of_a_change_leaves_the_old_settings_or_the_new_ones(desk: Desk) -> None:
+    """What a window does is to send one message and to hear one: it can be killed before, between and after."""
+    for step, expected in (("before it has sent", OLD), ("before it has heard", NEW), ("after it has heard", NEW)):
+        window = PlainWindow(desk.path)
+        window.ask(LogIn("Quentin", PIN))
+        number = None if expected is OLD else window.send(CHANGE)
+        if step == "after it has heard" and number is not None:
+            assert window.answer(number).done
+        window.close()
+        end = time.monotonic() + 5
+        while adjustments.read(desk.path) != expected:
+            assert time.monotonic() < end, step
+            time.sleep(0.01)
+        load(desk.path)
+        assert desk.requests is not None
+
+
+def test_a_request_cut_off_on_its_way_changes_nothing_and_ends_nothing(desk: Desk, window: PlainWindow) -> None:
+    context = zmq.Context()
+    settings = desk.released.settings.channel
+    socket = context.socket(zmq.DEALER)
+    socket.connect(f"tcp://{settings.host}:{settings.requests_port}")
+    for rubbish in (b"", b"{", b"[]", b'{"request_id": 1}', b"\xff" * 1000, b'{"request_id": 1, "sent_s": 0, "request": {"type": "log'):
+        socket.send(rubbish)
+        socket.send_multipart([rubbish, rubbish, rubbish])
+    socket.send(b"x" * (MAX_BYTES + 1))
+    time.sleep(0.1)
+    assert window.ask(StayLoggedIn(True)).done
+    assert not socket.poll(0), "what is not understood is not answered"
+    context.destroy(linger=0)
+    assert adjustments.read(desk.path) == OLD
+
+
+def test_changes_of_two_windows_come_one_after_the_other(desk: Desk, window: PlainWindow) -> None:
+    other = PlainWindow(desk.path)
+    other.ask(LogIn("Root", PIN))
+    desk.turns = False
+    first = window.send(CHANGE)
+    second = other.send(ChangeSettings((Changed(("recipes", "1", "quality", "max_dark_share"), 0.5),), "trial too"))
+    assert window.ask(StayLoggedIn(True)).done, "others are served while a change waits for its moment"
+    assert other.ask(TakeTestImage()).done
+    assert sum(isinstance(order, UseSettings) for order in desk.given) <= 1
+    assert adjustments.read(desk.path) == OLD
+    desk.turns = True
+    assert window.answer(first).done
+    assert other.answer(second).done
+    assert adjustments.read(desk.path) == {"recipes": {"1": {"quality": {"min_sharpness": 0.02, "max_dark_share": 0.5}}}}
+    assert [who for who, _, _ in settings_noted(desk)] == ["Quentin", "Root"]
+    other.close()
+
+
+def test_an_engine_that_stops_meanwhile_answers_nothing_and_changes_nothing(path: Path) -> None:
+    desk = Desk(path, turns=False)
+    desk.knows("Quentin", Level.QUALITY)
+    window = PlainWindow(path)
+    window.ask(LogIn("Quentin", PIN))
+    window.send(CHANGE)
+    window.until(lambda: bool(desk.given))
+    desk.close()
+    window.close()
+    assert adjustments.read(path) == OLD
+    assert settings_noted(desk)[-1][2].startswith("refused: ")
+    again = Desk(path)
+    try:
+        window = PlainWindow(path)
+        assert not window.ask(StayLoggedIn(True)).logged_in, "who was logged in logs in again"
+        assert window.ask(LogIn("Quentin", PIN)).done
+        window.close()
+    finally:
+        again.close()
+
+
+def test_a_file_edited_by_hand_is_read_again_on_request(desk: Desk, window: PlainWindow) -> None:
+    adjustments.path_of(desk.path).write_text('{"recipes": {"1": {"quality": {"min_sharpness": 0.02}}}}')
+    assert window.ask(ReloadSettings()).done
+    assert desk.released.settings.recipes[1].quality == {"min_sharpness": 0.02}
+    assert settings_noted(desk) == [("Quentin", "read again", "")]
+
+
+def test_a_flood_of_one_window_keeps_no_other_from_its_answer(desk: Desk, window: PlainWindow) -> None:
+    flood = PlainWindow(desk.path)
+    kinds = (ResetCounts(), Acknowledge(1), LogIn("Nobody", "0"), StayLoggedIn(True))
+    numbers = [flood.send(kinds[number % len(kinds)]) for number in range(90)]
+    for _ in range(3):
+        assert window.ask(StayLoggedIn(True)).done
+    assert all(not flood.answer(number).done for number in numbers)
+    assert desk.given == []
+    flood.close()
+
+
+def test_a_login_ends_with_the_window_and_service_mode_with_the_login(desk: Desk, window: PlainWindow) -> None:
+    assert window.ask(HoldService()).done
+    assert window.ask(LogOut("window closed")).done
+    window.until(lambda: bool(desk.given) and desk.given[-1] == orders.Service("Quentin", over=True))
+    assert window.ask(ResetCounts()).refusal == "a login of the level setter is needed"
