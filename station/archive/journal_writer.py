@@ -6,21 +6,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from station.archive.journal import COLUMNS, NAME, Entry, Kind, link_entry
-from station.archive.schema import START
+from station.archive.schema import PATIENCE_S, START, use_wal
 from station.errors import RecordError
 
-PATIENCE_S = 2.0
-"""Time for which another process that writes is waited for."""
-SCHEMA = """
-CREATE TABLE IF NOT EXISTS entries (
+SCHEMA = (
+    """CREATE TABLE IF NOT EXISTS entries (
     number INTEGER PRIMARY KEY AUTOINCREMENT,
     at TEXT NOT NULL, kind TEXT NOT NULL, who TEXT NOT NULL, subject TEXT NOT NULL,
     before TEXT NOT NULL, after TEXT NOT NULL, reason TEXT NOT NULL, chain TEXT NOT NULL
-);
-CREATE INDEX IF NOT EXISTS entries_kind ON entries (kind, subject, number);
-CREATE TRIGGER IF NOT EXISTS entries_stay BEFORE DELETE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END;
-CREATE TRIGGER IF NOT EXISTS entries_same BEFORE UPDATE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END;
-"""
+)""",
+    "CREATE INDEX IF NOT EXISTS entries_kind ON entries (kind, subject, number)",
+    "CREATE TRIGGER IF NOT EXISTS entries_stay BEFORE DELETE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
+    "CREATE TRIGGER IF NOT EXISTS entries_same BEFORE UPDATE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
+)
+"""Statements that make the journal."""
 
 
 def append(folder: Path, kind: Kind, who: str, subject: str = "", before: str = "", after: str = "", reason: str = "") -> Entry:
@@ -28,10 +27,10 @@ def append(folder: Path, kind: Kind, who: str, subject: str = "", before: str = 
     entry = Entry(datetime.now(UTC).isoformat(timespec="milliseconds"), kind, who, subject, before, after, reason)
     try:
         with closing(sqlite3.connect(folder / NAME, timeout=PATIENCE_S, isolation_level=None)) as connection:
-            connection.execute("PRAGMA journal_mode=WAL")
-            connection.execute("PRAGMA synchronous=FULL")
-            connection.executescript(SCHEMA)
+            use_wal(connection)
             connection.execute("BEGIN IMMEDIATE")
+            for statement in SCHEMA:
+                connection.execute(statement)
             last = connection.execute("SELECT chain FROM entries ORDER BY number DESC LIMIT 1").fetchone()
             values = [str(getattr(entry, name)) for name in COLUMNS]
             chain = link_entry(START if last is None else last[0], values)

@@ -7,6 +7,7 @@ holds the chain before. What is taken out or changed afterwards breaks the chain
 import hashlib
 import os
 import sqlite3
+import time
 from pathlib import Path
 
 from station.errors import RecordError
@@ -18,6 +19,8 @@ START = "0" * 64
 SEARCHABLE_SCORE = 0.05
 """Segments with a lower score of NOK are not in the table of segments; the record has them all."""
 
+PATIENCE_S = 2.0
+"""Time for which another process that uses the same file is waited for."""
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS records (
     inspection_id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -67,22 +70,45 @@ ADDED = {
 
 def open_index(folder: Path) -> sqlite3.Connection:
     """The index for writing, made or brought up to date. Raises sqlite3.Error, RecordError if it is of a later version."""
-    connection = sqlite3.connect(folder / NAME, timeout=2.0, check_same_thread=False)
-    version = connection.execute("PRAGMA user_version").fetchone()[0]
-    if version > VERSION:
+    connection = sqlite3.connect(folder / NAME, timeout=PATIENCE_S, check_same_thread=False)
+    try:
+        version = connection.execute("PRAGMA user_version").fetchone()[0]
+        if version > VERSION:
+            raise RecordError(
+                f"{folder}: index of version {version}, this software writes {VERSION}; update it, or set another archive.folder"
+            )
+        use_wal(connection)
+        with connection:  # readers see all of it or nothing
+            connection.execute("BEGIN IMMEDIATE")
+            present = {row[1] for row in connection.execute("PRAGMA table_info(records)")}
+            for name, kind in ADDED.items():
+                if present and name not in present:
+                    connection.execute(f"ALTER TABLE records ADD COLUMN {name} {kind}")
+            for statement in SCHEMA.split(";"):
+                connection.execute(statement)
+            connection.execute("UPDATE records SET frame_state = 'none' WHERE frame_file IS NULL AND frame_state = 'kept'")
+            connection.execute(f"PRAGMA user_version = {VERSION}")
+    except BaseException:
         connection.close()
-        raise RecordError(f"{folder}: index of version {version}, this software writes {VERSION}; update it, or set another archive.folder")
-    connection.execute("PRAGMA journal_mode = WAL")
-    connection.execute("PRAGMA synchronous = FULL")
-    present = {row[1] for row in connection.execute("PRAGMA table_info(records)")}
-    with connection:
-        for name, kind in ADDED.items():
-            if present and name not in present:
-                connection.execute(f"ALTER TABLE records ADD COLUMN {name} {kind}")
-        connection.executescript(SCHEMA)
-        connection.execute("UPDATE records SET frame_state = 'none' WHERE frame_file IS NULL AND frame_state = 'kept'")
-        connection.execute(f"PRAGMA user_version = {VERSION}")
+        raise
     return connection
+
+
+def use_wal(connection: sqlite3.Connection) -> None:
+    """Put a database into WAL mode, each commit durable. Raises sqlite3.Error.
+
+    Only the first time changes the file. SQLite does not wait for others then, whatever the connection's timeout, so it is done here.
+    """
+    until_s = time.monotonic() + PATIENCE_S
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+            break
+        except sqlite3.OperationalError as error:
+            if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or time.monotonic() > until_s:
+                raise
+        time.sleep(0.01)
+    connection.execute("PRAGMA synchronous = FULL")
 
 
 def read_index(folder: Path) -> sqlite3.Connection:
@@ -103,10 +129,21 @@ def read_index(folder: Path) -> sqlite3.Connection:
 
 
 def connect_to_read(path: Path) -> sqlite3.Connection:
-    """A database in WAL mode, also where nobody may write the log beside it. Raises sqlite3.Error."""
+    """Open a database in WAL mode, also where nobody may write the log next to it. Raises sqlite3.Error.
+
+    One that another process makes at this moment has no tables yet: they are waited for.
+    """
     writable = os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists()
     how = "mode=ro" if writable else "mode=ro&immutable=1"
-    return sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=2.0)
+    connection = sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=PATIENCE_S)
+    until_s = time.monotonic() + PATIENCE_S
+    try:
+        while connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None and time.monotonic() < until_s:
+            time.sleep(0.01)
+    except BaseException:
+        connection.close()
+        raise
+    return connection
 
 
 def link(before: str, record_sha256: str) -> str:

@@ -1,9 +1,12 @@
 """The journal only grows, and what is altered is named; users live in it."""
 
 import sqlite3
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import closing, contextmanager
 from datetime import UTC, datetime, timedelta
+from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,8 @@ from station.__main__ import main
 from station.accounts import log_in, log_out, remove_user, save_user
 from station.archive.journal import NAME, Kind, entries, verify_journal
 from station.archive.journal_writer import append
+from station.archive.reader import find
+from station.archive.schema import NAME as INDEX
 from station.archive.schema import open_index
 from station.errors import LoginError, RecordError
 from station.users import Level, User, users
@@ -47,11 +52,48 @@ def test_nothing_can_be_changed_or_removed_and_a_forger_is_found(tmp_path: Path,
     assert "entry 3" in capsys.readouterr().err
 
 
-def test_many_writers_keep_one_chain(tmp_path: Path) -> None:
-    with ThreadPoolExecutor(4) as pool:
-        list(pool.map(lambda i: append(tmp_path, Kind.ALARM, "station", str(i)), range(40)))
+@pytest.mark.parametrize("pool", [ThreadPoolExecutor(4), ProcessPoolExecutor(4, get_context("spawn"))], ids=["threads", "processes"])
+def test_many_writers_keep_one_chain(pool: Executor, tmp_path: Path) -> None:
+    with pool:
+        writing = [pool.submit(append, tmp_path, Kind.ALARM, "station", str(number)) for number in range(40)]
+        seen = 0
+        while not all(entry.done() for entry in writing):  # readers are there from the first moment
+            assert list(verify_journal(tmp_path)) == []
+            before, seen = seen, len(entries(tmp_path))
+            assert seen >= before
+    assert {entry.result().subject for entry in writing} == {str(number) for number in range(40)}
     assert len(entries(tmp_path)) == 40
     assert list(verify_journal(tmp_path)) == []
+
+
+@contextmanager
+def _released_later(release: Callable[[], None]) -> Iterator[None]:
+    """What another process does a moment later."""
+    timer = threading.Timer(0.2, release)
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.join()
+
+
+def test_a_writer_of_a_journal_that_is_not_yet_in_wal_mode_is_waited_for(tmp_path: Path) -> None:
+    """SQLite itself does not wait for a writer where a file changes its mode."""
+    with closing(sqlite3.connect(tmp_path / NAME, check_same_thread=False)) as other:
+        other.execute("CREATE TABLE left_by_a_stop (x)")
+        other.execute("BEGIN IMMEDIATE")
+        with _released_later(other.rollback):
+            append(tmp_path, Kind.ALARM, "station", "1")
+    assert [e.subject for e in entries(tmp_path)] == ["1"]
+
+
+def test_a_journal_or_index_that_is_just_being_made_is_waited_for(tmp_path: Path) -> None:
+    for name in (NAME, INDEX):
+        (tmp_path / name).touch()
+    with _released_later(lambda: append(tmp_path, Kind.ALARM, "station", "1")):
+        assert [e.subject for e in entries(tmp_path)] == ["1"]
+    with _released_later(lambda: open_index(tmp_path).close()):
+        assert find(tmp_path) == []
 
 
 def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
