@@ -95,7 +95,7 @@ def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
         mode="server" if mode == "server" else "client",
         port=free_ports(1)[0],
         deadline_ms=round(DEADLINE_MS * SLACK),
-        result_ttl_ms=round(1500 * SLACK),
+        result_ttl_ms=round(1000 * WINDOW_S * SLACK),
         stuck_ms=round(300 * SLACK),
         plc_heartbeat_ms=round(500 * SLACK),
         poll_ms=5,

@@ -8,11 +8,12 @@ from station.plc.simulated.line import Knob
 
 @pytest.mark.parametrize("mode", MODES)
 def test_no_ok_is_ever_false(mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("deploy.chaos_plc.KNOB_SHARE", 0.03)
+    monkeypatch.setattr("deploy.chaos_plc.KNOB_SHARE", 0.05)
     monkeypatch.setattr("deploy.chaos_plc.SLACK", 2.0)
-    report = run(mode, 70, seed=210)
+    monkeypatch.setattr("deploy.chaos_plc.WINDOW_S", 0.5)  # a part without a result takes all of it
+    report = run(mode, 70, seed=1968)
     assert report.good, report
-    assert set(report.knobs) == {str(knob) for knob in Knob}, "every knob was turned"
+    assert min(report.knobs[str(knob)] for knob in Knob) >= 3, "every knob was turned a few times"
     assert 25 < report.passed < 55
 
 
