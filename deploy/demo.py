@@ -5,6 +5,7 @@ The station runs unmodified in its own process: production camera code, producti
 
 import argparse
 import asyncio
+import atexit
 import json
 import os
 import signal
@@ -14,8 +15,9 @@ import sys
 import tempfile
 import threading
 import time
+from collections import deque
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import cv2
@@ -33,6 +35,9 @@ HERE = Path(__file__).resolve().parent
 SHIPPED = HERE / "frames"
 SERIAL = "0815-0000"
 RENDER_PATIENCE_S = 120.0
+RESERVED = 64
+"""Number of ports that are kept free for servers that are still starting."""
+_reserved: deque[socket.socket] = deque()
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -98,12 +103,26 @@ def shipped_parts() -> list[DemoPart]:
 
 
 def free_ports(count: int) -> list[int]:
-    """Ports that the system has free on loopback."""
-    with ExitStack() as stack:
-        sockets = [stack.enter_context(closing(socket.socket())) for _ in range(count)]
-        for entry in sockets:
-            entry.bind(("127.0.0.1", 0))
-        return [int(entry.getsockname()[1]) for entry in sockets]
+    """Ports on loopback that the system has free, kept from all other processes until `RESERVED` more have been asked for.
+
+    On POSIX a socket that is bound but does not listen keeps a port from being given away, and lets a server have it.
+    """
+    entries = [socket.socket() for _ in range(count)]
+    for entry in entries:
+        if os.name == "posix":
+            entry.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        entry.bind(("127.0.0.1", 0))
+    ports = [int(entry.getsockname()[1]) for entry in entries]
+    _reserved.extend(entries)
+    while len(_reserved) > (RESERVED if os.name == "posix" else 0):
+        _reserved.popleft().close()
+    return ports
+
+
+@atexit.register
+def _give_back() -> None:
+    while _reserved:
+        _reserved.popleft().close()
 
 
 def _has_display() -> bool:
