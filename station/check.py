@@ -7,12 +7,12 @@ from pathlib import Path
 
 from station.archive.room import Room
 from station.archive.writer import Archive
+from station.camera.choose import make_camera
 from station.errors import WeldgateError
 from station.plc.line import make_line
 from station.recipe import prepare
 from station.settings import Settings
 from station.settings_file import load
-from station.startup import make_camera
 
 
 def check(path: Path) -> Iterator[tuple[str, str | None]]:
@@ -49,7 +49,7 @@ def _archive(settings: Settings) -> None:
 
 
 def _camera(settings: Settings) -> None:
-    camera = make_camera(settings)
+    camera = make_camera(settings.camera)
     try:
         camera.open()
     finally:

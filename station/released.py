@@ -4,9 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from station.camera.port import Camera
+from station.camera_settings import AnyCamera
 from station.errors import SettingsError
 from station.recipe import Loaded, prepare
-from station.settings import PylonSettings, Section, Settings, for_recipe
+from station.settings import Settings, for_recipe
+from station.settings_section import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +24,7 @@ class Change:
 class Released:
     """Recipes are always loaded by the settings in use, so that one configuration names recipe and camera together."""
 
-    def __init__(self, settings: Settings, again: Callable[[], Settings], make_camera: Callable[[Settings], Camera]) -> None:
+    def __init__(self, settings: Settings, again: Callable[[], Settings], make_camera: Callable[[AnyCamera], Camera]) -> None:
         """`again` reads the file. Raises WeldgateError."""
         self._settings, self._again, self._make_camera = settings, again, make_camera
 
@@ -45,7 +47,7 @@ class Released:
         May be called from another thread than `accept`.
         """
         camera = None
-        if _which(new) != _which(self._settings):
+        if new.camera.identity != self._settings.camera.identity:
             raise SettingsError("another camera cannot take over while the station runs; start it again")
         known = {1, *self._settings.recipes}
         for other in sorted({1, *new.recipes} - {number}):
@@ -53,12 +55,12 @@ class Released:
                 prepare(new, other)  # or the station would not start next time, or refuse the recipe when the PLC wants it
         loaded = prepare(new, number)
         if new.camera != self._settings.camera:
-            camera = self._make_camera(new)
+            camera = self._make_camera(new.camera)
         return Change(new, loaded, camera)
 
     def camera(self) -> Camera:
         """Return the camera of the settings in use, not yet open."""
-        return self._make_camera(self._settings)
+        return self._make_camera(self._settings.camera)
 
     def accept(self, change: Change) -> None:
         """From now on."""
@@ -68,8 +70,3 @@ class Released:
 def _judging(settings: Settings, number: int) -> tuple[Section, ...]:
     chosen = for_recipe(settings, number)
     return chosen.weld, chosen.quality, chosen.model
-
-
-def _which(settings: Settings) -> tuple[str, ...]:
-    camera = settings.camera
-    return (camera.kind, camera.device_class, camera.serial) if isinstance(camera, PylonSettings) else (camera.kind,)

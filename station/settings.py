@@ -5,56 +5,17 @@ from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
+from station.camera_settings import AnyCamera, ReplaySettings
 from station.defects import kind_named
-from station.domain import Origin
 from station.errors import SettingsError
 from station.register_windows import COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS
+from station.settings_section import Section
 
 Port = Annotated[int, Field(ge=1, le=65535)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 KindName = Annotated[str, AfterValidator(lambda name: kind_named(name).name)]
-
-
-class Section(BaseModel):
-    """Base of all sections: unknown keys are mistakes, values never change."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class PylonSettings(Section):
-    """A Basler camera, real or emulated, through pypylon."""
-
-    kind: Literal["pylon"]
-    device_class: Literal["BaslerGigE", "BaslerCamEmu"] = "BaslerGigE"
-    serial: str = Field(min_length=1)
-    trigger: Literal["software", "line1"] = "software"
-    width_px: int = Field(default=4200, ge=1)
-    height_px: int = Field(default=2160, ge=1)
-    exposure_us: float = Field(default=2000.0, gt=0, le=1_000_000)
-    gain_db: float = Field(default=0.0, ge=0, le=48)
-    timeout_ms: int = Field(default=500, ge=10, le=60_000)
-    reconnect_s: float = Field(default=1.0, ge=0.05, le=60)
-
-    @property
-    def origin(self) -> Origin:
-        """Where this camera's frames come from: an emulated camera's parts carry the SIMULATED flag."""
-        return Origin.SIMULATED if self.device_class == "BaslerCamEmu" else Origin.CAMERA
-
-
-class ReplaySettings(Section):
-    """Recorded images from a folder, in the order of their names, once each."""
-
-    kind: Literal["replay"]
-    folder: Path
-
-    reconnect_s: float = Field(default=1.0, ge=0.05, le=60)
-
-    @property
-    def origin(self) -> Origin:
-        """Replayed parts read TEST to the PLC."""
-        return Origin.REPLAY
 
 
 class WeldSettings(Section):
@@ -97,9 +58,9 @@ class ModelSettings(Section):
     """What must be found in it at the start."""
     self_test_s: float = Field(default=10.0, ge=0.5, le=3600)
     """Idle time between two self-tests."""
-    limits: dict[KindName, LimitSettings] = {}
+    limits: dict[KindName, LimitSettings] = Field(default_factory=dict)
     """By the name of the kind of defect."""
-    segment_thresholds: dict[Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]] = {}
+    segment_thresholds: dict[Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]] = Field(default_factory=dict)
     """Thresholds of single segments, for any kind of defect."""
 
     @model_validator(mode="after")
@@ -121,7 +82,7 @@ class TlsSettings(Section):
 class GoldenSettings(Section):
     """Parts known to be good or bad, to be judged when the PLC asks for it."""
 
-    masters: dict[str, Literal["OK", "NOK"]] = {}
+    masters: dict[str, Literal["OK", "NOK"]] = Field(default_factory=dict)
     """Serial of each master and what the station must find."""
     due_h: float | None = Field(default=None, gt=0, le=8760)
     """A master not judged for so long is due: FUNCTION_CHECK, which the PLC's block takes for no release; None: never."""
@@ -130,9 +91,9 @@ class GoldenSettings(Section):
 class RecipeSettings(Section):
     """What differs from the sections of the same name for one kind of part."""
 
-    weld: dict[str, Any] = {}
-    quality: dict[str, Any] = {}
-    model: dict[str, Any] = {}
+    weld: dict[str, Any] = Field(default_factory=dict)
+    quality: dict[str, Any] = Field(default_factory=dict)
+    model: dict[str, Any] = Field(default_factory=dict)
 
 
 class PlcSettings(Section):
@@ -241,7 +202,7 @@ class PanelSettings(Section):
 class Settings(Section):
     """The whole of station.toml."""
 
-    camera: Annotated[PylonSettings | ReplaySettings, Field(discriminator="kind")]
+    camera: Annotated[AnyCamera, Field(discriminator="kind")]
     weld: WeldSettings = WeldSettings()
     quality: QualitySettings = QualitySettings()
     model: ModelSettings = ModelSettings()
@@ -250,7 +211,7 @@ class Settings(Section):
     channel: ChannelSettings = ChannelSettings()
     golden: GoldenSettings = GoldenSettings()
     panel: PanelSettings = PanelSettings()
-    recipes: dict[Annotated[int, Field(ge=1, le=65535)], RecipeSettings] = {}
+    recipes: dict[Annotated[int, Field(ge=1, le=65535)], RecipeSettings] = Field(default_factory=dict)
     """By number; recipe 1 is the sections as they are, unless it is named here."""
 
 

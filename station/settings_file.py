@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 from station.adjustments import laid_over, path_of, read
 from station.errors import SettingsError
 from station.renamed_settings import with_new_names
-from station.settings import ReplaySettings, Settings, for_recipe
+from station.settings import Settings, for_recipe
 
 
 def load(path: Path, changes: dict[str, Any] | None = None) -> Settings:
@@ -49,14 +49,19 @@ def load(path: Path, changes: dict[str, Any] | None = None) -> Settings:
 
 def _first(error: ValidationError) -> str:
     def told(e: ErrorDetails) -> str:
-        place = ".".join(str(p) for p in e["loc"] if p not in ("pylon", "replay"))
+        section, *keys = e["loc"] or ("",)
+        if section == "camera":
+            keys = keys[1:]  # the first is the camera's kind
+        place = ".".join(map(str, (section, *keys)))
         return f"{place}: {e['msg'].removeprefix('Value error, ')}"
 
     return "; ".join(map(told, error.errors()))
 
 
 def _under(folder: Path, values: dict[str, Any]) -> dict[str, Path]:
-    return {key: folder / value for key, value in values.items() if key.endswith("_path") or key == "path" if value is not None}
+    """Return the paths among a section's values, counted from the folder."""
+    named = {key: value for key, value in values.items() if key in ("path", "folder") or key.endswith("_path")}
+    return {key: folder / value for key, value in named.items() if value is not None}
 
 
 def _anchored(settings: Settings, folder: Path) -> Settings:
@@ -67,12 +72,11 @@ def _anchored(settings: Settings, folder: Path) -> Settings:
             number: recipe.model_copy(update={"model": {**recipe.model, **_under(folder, recipe.model)}})
             for number, recipe in settings.recipes.items()
         },
-        "archive": settings.archive.model_copy(update={"folder": folder / settings.archive.folder}),
+        "archive": settings.archive.model_copy(update=_under(folder, dict(settings.archive))),
+        "camera": settings.camera.model_copy(update=_under(folder, dict(settings.camera))),
     }
     tls = settings.plc.tls
     if tls is not None:
-        anchored = tls.model_copy(update={key: folder / path for key, path in tls})
+        anchored = tls.model_copy(update=_under(folder, dict(tls)))
         changes["plc"] = settings.plc.model_copy(update={"tls": anchored})
-    if isinstance(settings.camera, ReplaySettings):
-        changes["camera"] = settings.camera.model_copy(update={"folder": folder / settings.camera.folder})
     return settings.model_copy(update=changes)

@@ -1,4 +1,4 @@
-"""Opens what the engine needs and reports every failure at once; the only place that chooses by kind."""
+"""Opens what the engine needs and reports every failure at once."""
 
 import logging
 import signal
@@ -15,7 +15,7 @@ from station.alarmlog import AlarmLog
 from station.archive.prune import Housekeeping
 from station.archive.reader import Wanted, find
 from station.archive.writer import Archive
-from station.camera.port import Camera
+from station.camera.choose import make_camera
 from station.camera.reconnecting import ReconnectingCamera
 from station.channel import Publisher, RequestServer
 from station.cycle import Cycle
@@ -30,24 +30,13 @@ from station.plc.line import make_line
 from station.plc.port import Line
 from station.recipe import Loaded, prepare
 from station.released import Released
-from station.settings import PylonSettings, Settings
+from station.settings import Settings
 from station.settings_file import load
 from station.watch import Master, Watch
 
 log = logging.getLogger("weldgate")
 
 Opened = TypeVar("Opened")
-
-
-def make_camera(settings: Settings) -> Camera:
-    """The camera that the settings name, not yet open."""
-    if isinstance(settings.camera, PylonSettings):
-        from station.camera.pylon import PylonCamera
-
-        return PylonCamera(settings.camera)
-    from station.camera.replay import ReplayCamera
-
-    return ReplayCamera(settings.camera)
 
 
 def make_cycle(
@@ -62,7 +51,7 @@ def make_cycle(
     """Return the cycle that the settings describe; `released`: settings in use, which may change meanwhile."""
     golden = settings.golden
     return Cycle(
-        camera=ReconnectingCamera(make_camera(settings), settings.camera.reconnect_s),
+        camera=ReconnectingCamera(make_camera(settings.camera), settings.camera.reconnect_s),
         origin=settings.camera.origin,
         line=line,
         archive=archive,

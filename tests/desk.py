@@ -7,6 +7,7 @@ from pathlib import Path
 
 from station.accounts import save_user
 from station.camera.reconnecting import ReconnectingCamera
+from station.camera_settings import AnyCamera
 from station.channel import RequestClient, RequestServer
 from station.domain import Frame
 from station.errors import CameraLost
@@ -15,7 +16,6 @@ from station.orders import Order, OrderQueue, Reload, UseSettings
 from station.recipe import Loaded
 from station.released import Released
 from station.requests import Answer, EndService, Message, Request
-from station.settings import Settings
 from station.settings_file import load
 from station.settings_use import use_settings
 from station.users import Level, users
@@ -26,8 +26,8 @@ PIN = "1234"
 class StubCamera:
     """Opens unless its exposure is out of its range."""
 
-    def __init__(self, settings: Settings) -> None:
-        self.exposure_us: float = getattr(settings.camera, "exposure_us", 1.0)
+    def __init__(self, settings: AnyCamera) -> None:
+        self.exposure_us: float = getattr(settings, "exposure_us", 1.0)
 
     def open(self) -> None:
         if self.exposure_us < 1:

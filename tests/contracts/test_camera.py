@@ -3,17 +3,19 @@
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import get_args
 
 import cv2
 import numpy as np
 import pytest
 
+from station.camera.choose import make_camera
 from station.camera.port import Camera
 from station.camera.pylon import PylonCamera
 from station.camera.replay import ReplayCamera
+from station.camera_settings import AnyCamera, CameraSettings, PylonSettings, ReplaySettings
 from station.domain import Image, Origin
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
-from station.settings import PylonSettings, ReplaySettings
 from synth.feed import Feed
 
 Make = Callable[[list[Image]], Camera]
@@ -39,7 +41,11 @@ class Fed(PylonCamera):
         return super().grab()
 
 
-@pytest.fixture(params=["pylon", "replay"])
+CAMERAS = {"pylon": PylonSettings, "replay": ReplaySettings}
+"""A new camera goes here, and gets a branch of `make`."""
+
+
+@pytest.fixture(params=CAMERAS)
 def make(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Make]:
     made: list[Camera] = []
 
@@ -61,6 +67,45 @@ def make(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
     yield build
     for camera in made:
         camera.close()
+
+
+def test_every_camera_that_settings_may_name_is_held_to_the_contract() -> None:
+    assert set(CAMERAS.values()) == set(get_args(AnyCamera))
+    for kind, settings in CAMERAS.items():
+        assert get_args(settings.model_fields["kind"].annotation) == (kind,)
+
+
+@pytest.mark.parametrize(
+    ("settings", "made"),
+    [
+        (PylonSettings(kind="pylon", serial="1"), PylonCamera),
+        (ReplaySettings(kind="replay", folder=Path("a")), ReplayCamera),
+    ],
+)
+def test_the_settings_name_the_camera(settings: AnyCamera, made: type[Camera]) -> None:
+    assert type(make_camera(settings)) is made
+
+
+def test_the_settings_of_a_camera_say_what_it_is_and_what_can_be_set() -> None:
+    real = PylonSettings(kind="pylon", serial="1", exposure_us=300, gain_db=2)
+    assert real.identity != real.model_copy(update={"serial": "2"}).identity
+    assert real.identity == real.model_copy(update={"exposure_us": 400}).identity
+    assert real.adjustable == (300, 2)
+    recorded = ReplaySettings(kind="replay", folder=Path("a"))
+    assert recorded.identity == ("replay",)
+    assert recorded.adjustable is None
+    # what a new make gets without saying anything: parts count as real, nothing can be set in the window
+    assert CameraSettings(kind="new").origin is Origin.CAMERA
+    assert CameraSettings(kind="new").adjustable is None
+
+
+def test_the_configuration_of_a_camera_is_written_as_ever() -> None:
+    """CONFIG_CRC, which the PLC reads, is made from this text."""
+    assert PylonSettings(kind="pylon", serial="1").model_dump_json() == (
+        '{"kind":"pylon","device_class":"BaslerGigE","serial":"1","trigger":"software","width_px":4200,"height_px":2160,'
+        '"exposure_us":2000.0,"gain_db":0.0,"timeout_ms":500,"reconnect_s":1.0}'
+    )
+    assert ReplaySettings(kind="replay", folder=Path("a")).model_dump_json() == '{"kind":"replay","folder":"a","reconnect_s":1.0}'
 
 
 def test_each_trigger_gives_the_next_picture_to_the_pixel(make: Make) -> None:

@@ -2,8 +2,8 @@ from pathlib import Path
 
 import pytest
 
+from station.camera_settings import PylonSettings, ReplaySettings
 from station.errors import SettingsError
-from station.settings import PylonSettings
 from station.settings_file import load
 from tests.conftest import ROOT
 
@@ -16,13 +16,31 @@ def test_the_example_loads_and_its_paths_count_from_its_folder() -> None:
     assert settings.model.path.resolve() == ROOT / "models" / "shipped" / "weldgate.onnx"
 
 
+def test_every_path_counts_from_the_folder_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "station.toml"
+    path.write_text(
+        '[camera]\nkind = "replay"\nfolder = "images"\n[archive]\nfolder = "kept"\n[model]\npath = "a.onnx"\n'
+        '[plc.tls]\ncertificate_path = "a.pem"\nkey_path = "a.key"\nca_path = "ca.pem"\n[recipes.2]\nmodel = { path = "b.onnx" }\n'
+    )
+    settings = load(path)
+    assert isinstance(settings.camera, ReplaySettings)
+    assert settings.plc.tls is not None
+    tls = settings.plc.tls
+    found = [settings.camera.folder, settings.archive.folder, settings.model.path, settings.model.ring_path]
+    found += [tls.certificate_path, tls.key_path, tls.ca_path, settings.recipes[2].model["path"]]
+    names = ["images", "kept", "a.onnx", "ring.onnx", "a.pem", "a.key", "ca.pem", "b.onnx"]
+    assert found == [tmp_path / name for name in names]
+    assert settings.model.self_test_path is None
+
+
 @pytest.mark.parametrize(
     ("text", "part"),
     [
         ("", "camera"),
         ("[camera", "not valid TOML"),
         ('[camera]\nkind = "webcam"\n', "kind"),
-        ('[camera]\nkind = "pylon"\nserial = ""\n', "serial"),
+        ('[camera]\nkind = "pylon"\nserial = ""\n', r": camera\.serial: "),
+        ('[camera]\nkind = "replay"\n', r": camera\.folder: "),
         (GOOD + "exposure_us = -1\n", "exposure_us"),
         (GOOD + "expsure_us = 5\n", "expsure_us"),
         (GOOD + "[plc]\nport = 70000\n", "plc.port"),

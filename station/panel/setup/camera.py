@@ -13,7 +13,7 @@ from station.panel.weld.pictures import drawn
 from station.panel.weld.weld_view import Drawn, WeldView
 from station.panel.words import data, translate
 from station.requests import MIN_REASON, Changed, HoldService
-from station.settings import PylonSettings, for_recipe
+from station.settings import for_recipe
 from station.users import Level
 
 
@@ -81,10 +81,10 @@ class CameraPage(Page):
         self._fill()
 
     def _fill(self) -> None:
-        camera = self._session.received.settings.camera
-        if isinstance(camera, PylonSettings):
-            self.exposure.set(camera.exposure_us)
-            self.gain.set(camera.gain_db)
+        used = self._session.received.settings.camera.adjustable
+        if used is not None:
+            for field, value in zip((self.exposure, self.gain), used, strict=True):
+                field.set(value)
         self._look()
 
     def _on_user(self) -> None:
@@ -110,11 +110,10 @@ class CameraPage(Page):
             self.problem.setText(f"{nothing} {data(why)}")
 
     def _look(self) -> None:
-        session, camera = self._session, self._session.received.settings.camera
+        session, used = self._session, self._session.received.settings.camera.adjustable
         looking = session.service.held is not None and session.service.held.look
         self.live.setChecked(looking)
         self.live.setEnabled(session.account.may(Level.SETTER))
-        used = (camera.exposure_us, camera.gain_db) if isinstance(camera, PylonSettings) else None
         for field in (self.exposure, self.gain):
             field.setEnabled(used is not None and session.account.may(Level.SETTER))
         changed = used is not None and (self.exposure.value, self.gain.value) != used
@@ -166,11 +165,11 @@ class CameraPage(Page):
             self.weld.show_weld(Drawn(plain.image, plain.scale, plain.origin_px, self._ring, (), ()))
 
     def _save(self) -> None:
-        camera = self._session.received.settings.camera
-        if not isinstance(camera, PylonSettings) or self.exposure.value is None or self.gain.value is None:
+        used = self._session.received.settings.camera.adjustable
+        if used is None or self.exposure.value is None or self.gain.value is None:
             return
-        used = {"exposure_us": (camera.exposure_us, self.exposure.value), "gain_db": (camera.gain_db, self.gain.value)}
-        new = [Changed(("camera", key), after, before) for key, (before, after) in used.items() if before != after]
+        values = zip(("exposure_us", "gain_db"), used, (self.exposure.value, self.gain.value), strict=True)
+        new = [Changed(("camera", key), after, before) for key, before, after in values if before != after]
         self._saving = True
         self.said.setText(translate("camera", "waiting for the engine"))
         self._session.change.make(new, self.reason.text())

@@ -1,0 +1,17 @@
+"""The camera that the settings name; the only place that knows all makes. A library is imported only if its camera is used."""
+
+from station.camera.port import Camera
+from station.camera_settings import AnyCamera, PylonSettings, ReplaySettings
+
+
+def make_camera(settings: AnyCamera) -> Camera:
+    """Make the camera that the settings name, not yet open."""
+    match settings:
+        case PylonSettings():
+            from station.camera.pylon import PylonCamera
+
+            return PylonCamera(settings)
+        case ReplaySettings():
+            from station.camera.replay import ReplayCamera
+
+            return ReplayCamera(settings)
