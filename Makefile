@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
-.PHONY: help setup demo test lint bench chaos-plc chaos-records chaos-panel soak-panel screenshots translations clean
+.PHONY: help setup demo test lint bench chaos-plc chaos-records chaos-panel soak-panel screenshots translations docs registers clean
 
 help: ## what can be made
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -48,6 +48,15 @@ screenshots: $(VENV)/.dev ## every page of the window in both languages and them
 translations: $(VENV)/.dev ## texts of the window into weldgate_de.ts, that into weldgate_de.qm
 	$(BIN)/python -m deploy.translations
 
+docs: $(VENV)/.docs ## the pages of deploy/docs, a drawing of the rooms and the API as a site that needs no network, into site/
+	$(BIN)/python -m deploy.docs.build
+
+registers: $(VENV)/.demo ## the register map and the PLC block in all four forms, into deploy/plc
+	$(BIN)/weldgate registers --format md > deploy/plc/register_map.md
+	$(BIN)/weldgate registers --format st > deploy/plc/weldgate.st
+	$(BIN)/weldgate registers --format scl > deploy/plc/weldgate.scl
+	$(BIN)/weldgate registers --format symbols > deploy/plc/weldgate_symbols.csv
+
 clean: ## remove the virtual environment
 	rm -rf $(VENV)
 
@@ -62,5 +71,9 @@ $(VENV)/.demo: $(VENV)/.system pyproject.toml constraints.txt
 
 $(VENV)/.dev: $(VENV)/.demo pyproject.toml constraints.txt deploy/system.sh
 	deploy/system.sh test
-	$(PIP) -e '.[synth,train,tls,pdf,dev]'
+	$(PIP) -e '.[synth,train,tls,pdf,docs,dev]'
+	touch $@
+
+$(VENV)/.docs: $(VENV)/.system pyproject.toml constraints.txt
+	$(PIP) -e '.[docs]'
 	touch $@
