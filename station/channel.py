@@ -19,8 +19,8 @@ _EVENTS: TypeAdapter[Event] = TypeAdapter(Annotated[Event, Field(discriminator="
 _PREVIEW = TypeAdapter(Preview)
 _MESSAGE = TypeAdapter(Message)
 _ANSWER = TypeAdapter(Answer)
-MAX_REQUESTS = 100
-"""Requests that are looked at in one go."""
+MAX_REQUESTS = 10
+"""Requests that are looked at in one go: windows have their turns, and each may take some milliseconds."""
 MAX_BYTES = 65_536
 """Longest request; a sender of a longer one is disconnected."""
 LINGER_MS = 200

@@ -21,6 +21,7 @@ from station.logins import Logins
 from station.plc.port import Counts
 from station.plc.registers import Status
 from station.requests import (
+    FAULT,
     TOO_OLD,
     Acknowledge,
     Answer,
@@ -50,7 +51,6 @@ FRESH_S = 2.0
 """An older request is refused: its sender has seen that nothing came."""
 LOOKED_AT = 2000
 """Entries of alarms, the newest, that can be acknowledged."""
-FAULT = "internal error: see the engine's log"
 OTHER_SERVES = "somebody else works on the station"
 
 Reply = Callable[[Answer], None]

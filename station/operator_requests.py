@@ -11,11 +11,11 @@ from station.channel import RequestServer
 from station.errors import WeldgateError
 from station.events import Event, StatusEvent
 from station.logins import Logins
-from station.operator_desk import FAULT, OperatorDesk, Reply
+from station.operator_desk import OperatorDesk, Reply
 from station.orders import Order
 from station.plc.port import Counts
 from station.released import Released
-from station.requests import Answer, ChangeSettings, Message, ReloadSettings
+from station.requests import FAULT, Answer, ChangeSettings, Message, ReloadSettings
 from station.settings_change import SettingsChange
 
 log = logging.getLogger("weldgate.requests")

@@ -15,6 +15,8 @@ from station.users import Level
 TOO_OLD = "the request came too late: nothing was done"
 """Refusal of a request whose sender has seen that nothing came."""
 
+FAULT = "internal error: see the engine's log"
+"""Refusal of a request that ended in a fault of the engine."""
 MIN_REASON = 5
 """Characters that the reason of a change needs at least."""
 

@@ -19,7 +19,7 @@ from station.durable import stage, sync_folder
 from station.errors import RecordError, SettingsError, WeldgateError
 from station.orders import Order, Reload, UseSettings
 from station.released import Released
-from station.requests import MIN_REASON, Changed
+from station.requests import FAULT, MIN_REASON, Changed
 from station.settings import Settings, for_recipe
 from station.settings_file import load
 
@@ -69,10 +69,11 @@ class SettingsChange:
                 append(self._folder, Kind.SETTING, who, subject, old, new, reason.strip())
                 noted.append((subject, old, new))
             self._use(changes)
-        except WeldgateError as error:
+        except Exception as error:
+            why = str(error) if isinstance(error, WeldgateError) else FAULT
             with suppress(RecordError):
                 for subject, old, new in noted:
-                    append(self._folder, Kind.SETTING, who, subject, new, old, f"refused: {error}")
+                    append(self._folder, Kind.SETTING, who, subject, new, old, f"refused: {why}")
             raise
 
     def _use(self, changes: dict[str, object]) -> None:

@@ -8,10 +8,10 @@ from station.errors import SettingsError, WeldgateError
 from station.orders import UseSettings
 from station.recipe import Loaded, prepare
 from station.released import Released
+from station.requests import FAULT
 
 log = logging.getLogger("weldgate.settings")
 
-FAULT = "internal error: see the engine's log"
 RELOAD_REFUSED = "the settings file cannot be used: see the engine's log; the settings before stay in use"
 CAMERA_REFUSES = "the camera cannot be used with these values: see the engine's log"
 

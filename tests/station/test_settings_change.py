@@ -19,7 +19,7 @@ from station.errors import ModelError, SettingsError
 from station.orders import Order, OrderQueue, Reload, Ticket, UseSettings
 from station.recipe import Loaded, prepare
 from station.released import Released
-from station.requests import Changed
+from station.requests import FAULT, Changed
 from station.settings import Settings
 from station.settings_change import NO_MOMENT, NOT_IN_FILE, OTHERWISE, SettingsChange
 from station.settings_file import load
@@ -158,6 +158,17 @@ def test_a_network_that_does_not_load_is_refused(engine: Engine, monkeypatch: py
         engine.change_to(0.02)
     assert adjustments.read(engine.path) == {}
     assert engine.noted()[-1][3] == "refused: model.onnx: damaged"
+
+
+def test_a_fault_on_the_way_is_noted_as_a_refusal(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_settings: Settings, _number: int) -> Loaded:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(released, "prepare", broken)
+    with pytest.raises(ZeroDivisionError):
+        engine.change_to(0.02)
+    assert adjustments.read(engine.path) == {}
+    assert engine.noted()[-1][1:] == ("0.02", "0.01", f"refused: {FAULT}")
 
 
 def test_a_file_that_cannot_be_replaced_leaves_camera_and_settings(engine: Engine, quick: Loaded, monkeypatch: pytest.MonkeyPatch) -> None:
