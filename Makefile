@@ -24,29 +24,29 @@ lint: $(VENV)/.dev ## ruff, mypy, import contracts
 	$(BIN)/lint-imports
 
 bench: $(VENV)/.dev ## times of each step on the emulated camera, of the generator and of the classifier
-	$(BIN)/python -m deploy.bench
-	$(BIN)/python -m deploy.bench_plc
-	$(BIN)/python -m deploy.bench_records
-	$(BIN)/python -m deploy.bench_render
+	$(BIN)/python -m deploy.bench.station
+	$(BIN)/python -m deploy.bench.plc
+	$(BIN)/python -m deploy.bench.records
+	$(BIN)/python -m deploy.bench.render
 	$(BIN)/python -m models.bench
 
 chaos-plc: $(VENV)/.demo ## 10,000 parts in each PLC mode with both sides misbehaving
-	$(BIN)/python -m deploy.chaos_plc
+	$(BIN)/python -m deploy.chaos.plc
 
 chaos-records: $(VENV)/.demo ## 300 kills of a writer of records
-	$(BIN)/python -m deploy.chaos_records
+	$(BIN)/python -m deploy.chaos.records
 
 chaos-panel: $(VENV)/.demo ## the window killed, restarted and stopped while 600 parts pass
-	$(BIN)/python -m deploy.chaos_panel
+	$(BIN)/python -m deploy.chaos.panel
 
 soak-panel: $(VENV)/.demo ## eight hours of events through the window in fast motion
-	$(BIN)/python -m deploy.soak_panel
+	$(BIN)/python -m deploy.chaos.soak_panel
 
 screenshots: $(VENV)/.dev ## every page of the window in both languages and themes, into screenshots/
-	xvfb-run -a -s "-screen 0 1920x1200x24" $(BIN)/python -m deploy.screenshots
+	xvfb-run -a -s "-screen 0 1920x1200x24" $(BIN)/python -m deploy.docs.screenshots
 
 translations: $(VENV)/.dev ## texts of the window into weldgate_de.ts, that into weldgate_de.qm
-	$(BIN)/python -m deploy.translations
+	$(BIN)/python -m deploy.docs.translations
 
 docs: $(VENV)/.docs ## the pages of deploy/docs, a drawing of the rooms and the API as a site that needs no network, into site/
 	$(BIN)/python -m deploy.docs.build

@@ -14,7 +14,7 @@ from station.defects import KINDS as DEFECT_KINDS
 from station.errors import WeldgateError
 
 if TYPE_CHECKING:
-    from station.inspection import Inspector
+    from station.inspection.inspector import Inspector
 
 SHIPPED = Path(__file__).resolve().parent / "shipped"
 KINDS = {kind.name: label for label, kind in enumerate(DEFECT_KINDS, start=1)}
@@ -130,9 +130,9 @@ def _progress(text: str, total: int) -> Iterator[Callable[[], None]]:
 
 
 def _inspector(arguments: argparse.Namespace) -> "Inspector":
-    from station.recipe import load_inspector
-    from station.settings import for_images
-    from station.settings_file import load
+    from station.inspection.loading import load_inspector
+    from station.settings.file import load
+    from station.settings.model import for_images
 
     settings = for_images(SHIPPED) if arguments.settings is None else load(arguments.settings)
     named = {key: value for key, value in (("path", arguments.model), ("ring_path", arguments.ring)) if value is not None}

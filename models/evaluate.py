@@ -16,7 +16,7 @@ from models.scores import class_scores, row_of
 from station.classify.onnx import CLASSES, Classifier
 from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_DEG, SEGMENTS, Inspection, Verdict
-from station.inspection import Inspector
+from station.inspection.inspector import Inspector
 from station.vision.unwrap import segments, unwrap
 
 WORST = 24

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from station.analysis.truth import interval
 from station.domain import Verdict
-from station.imagefile import read_image
-from station.inspection import Inspector
-from station.report.truth import interval
+from station.files.image import read_image
+from station.inspection.inspector import Inspector
 
 FACTORS = (1.0, 0.7, 0.5, 0.3, 0.2, 0.1)
 """Thresholds as shares of the file's."""

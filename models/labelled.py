@@ -19,7 +19,7 @@ from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, Ring
 from station.errors import ImageError, LocateError
-from station.imagefile import read_image
+from station.files.image import read_image
 from station.vision.unwrap import unwrap
 
 MIN_OVERLAP = 0.2

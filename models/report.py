@@ -13,10 +13,10 @@ import numpy as np
 from models.crops import OK
 from models.evaluate import Evaluation
 from models.measures import ESCAPE_COST, calibration_error, count
+from station.analysis.report.template import render
+from station.analysis.truth import interval
 from station.classify.onnx import CLASSES
-from station.durable import write_whole
-from station.report.template import render
-from station.report.truth import interval
+from station.files.durable import write_whole
 
 SIZES_MM = (0.0, 0.15, 0.3, 0.6, 1.2, 1e9)
 TEMPLATE = Path(__file__).with_name("report.html.j2")

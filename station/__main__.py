@@ -12,13 +12,11 @@ from contextlib import suppress
 from pathlib import Path
 
 from station import __version__
+from station.cli.records import add_commands
 from station.errors import WeldgateError
-from station.process import room_command
-from station.records_command import add_commands
+from station.files.installation import SHIPPED_NETWORKS, room_command
 
 SETTINGS = Path("station.toml")
-SHIPPED = Path(__file__).resolve().parent.parent / "models" / "shipped"
-"""The networks that come with the station."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -88,7 +86,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _engine(arguments: argparse.Namespace) -> int:
-    from station.startup import run_engine
+    from station.engine.startup import run_engine
 
     run_engine(arguments.settings)
     return 0
@@ -107,7 +105,7 @@ def _panel(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from station.settings_file import load
+    from station.settings.file import load
 
     load(arguments.settings)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
@@ -124,15 +122,15 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _replay(arguments: argparse.Namespace) -> int:
-    from station.replay.command import run_replay
+    from station.cli.replay import run_replay
 
-    return run_replay(arguments, SHIPPED)
+    return run_replay(arguments, SHIPPED_NETWORKS)
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from station.adjustments import words
-    from station.check import check
+    from station.cli.check import check
     from station.errors import SettingsError
+    from station.settings.adjustments import words
 
     problems = 0
     for name, problem in check(arguments.settings):
@@ -146,7 +144,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _registers(arguments: argparse.Namespace) -> int:
     from station.plc.block.dialects import scl, structured_text, symbols
-    from station.plc.document import as_csv, as_markdown
+    from station.plc.map.document import as_csv, as_markdown
 
     forms = {"md": as_markdown, "csv": as_csv, "st": structured_text, "scl": scl, "symbols": symbols}
     print(forms[arguments.format](), end="")
@@ -173,7 +171,7 @@ def _line(arguments: argparse.Namespace) -> int:
 
 
 def _certificates(arguments: argparse.Namespace) -> int:
-    from station.plc.certificates import make_certificates
+    from station.plc.wire.certificates import make_certificates
 
     for path in make_certificates(arguments.folder, arguments.host, arguments.days):
         print(path)

@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 from numpy.typing import NDArray
 
-from station.durable import write_whole
+from station.files.durable import write_whole
 from synth.errors import SynthError
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from station.domain import Image
-from station.imagefile import read_image
+from station.files.image import read_image
 from tests.parts import FRAMES, labels
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -5,20 +5,20 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from station.accounts import save_user
 from station.camera.reconnecting import ReconnectingCamera
-from station.camera_settings import AnyCamera
-from station.channel import RequestClient, RequestServer
+from station.channel.requests import Answer, EndService, Message, Request
+from station.channel.zeromq import RequestClient, RequestServer
 from station.domain import Frame
+from station.engine.active_settings import Released
+from station.engine.operator_requests import OperatorRequests
+from station.engine.orders import Order, OrderQueue, Reload, UseSettings
+from station.engine.settings_use import use_settings
 from station.errors import CameraLost
-from station.operator_requests import OperatorRequests
-from station.orders import Order, OrderQueue, Reload, UseSettings
-from station.recipe import Loaded
-from station.released import Released
-from station.requests import Answer, EndService, Message, Request
-from station.settings_file import load
-from station.settings_use import use_settings
-from station.users import Level, users
+from station.inspection.loading import Loaded
+from station.journal.accounts import save_user
+from station.journal.users import Level, users
+from station.settings.camera import AnyCamera
+from station.settings.file import load
 
 PIN = "1234"
 

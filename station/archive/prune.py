@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from station.archive.schema import NAME, START
-from station.durable import sync_folder
+from station.archive.schema import NAME
 from station.errors import RecordError
-from station.settings import KeepSettings
+from station.files.durable import sync_folder
+from station.files.sqlite import CHAIN_START
+from station.settings.model import KeepSettings
 
 log = logging.getLogger("weldgate.archive")
 
@@ -144,7 +145,7 @@ class _Work:
             if rows and not self._dry:
                 last, marks = rows[-1], [(row[0],) for row in rows]
                 self._index.execute("DELETE FROM let_go")
-                self._index.execute("INSERT INTO let_go VALUES (?, ?)", (last[0], last[3] or START))
+                self._index.execute("INSERT INTO let_go VALUES (?, ?)", (last[0], last[3] or CHAIN_START))
                 self._index.executemany("DELETE FROM segments WHERE inspection_id = ?", marks)
                 self._index.executemany("DELETE FROM records WHERE inspection_id = ?", marks)
             self._commit(names)

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from station.archive.schema import START, link, read_index
+from station.archive.schema import link, read_index
 from station.errors import RecordError
+from station.files.sqlite import CHAIN_START
 from station.records import Record, from_json
 
 WRITTEN_S = 1.0
@@ -165,7 +166,7 @@ def verify(folder: Path) -> Iterator[tuple[str, str]]:
         for problem in _problems(folder, row, chain):
             if find(folder, Wanted(number=row.inspection_id)) == [row]:  # not let go meanwhile
                 yield row.record_file, problem
-        chain, before = row.chain or START, row.inspection_id
+        chain, before = row.chain or CHAIN_START, row.inspection_id
     listed = {name for row in rows for name in (row.record_file, row.frame_file) if name is not None}
     for path in sorted(folder.glob("????-??-??/*")):
         name = path.relative_to(folder).as_posix()
@@ -209,4 +210,4 @@ def _let_go(folder: Path) -> tuple[str, int]:
             row = connection.execute("SELECT chain, inspection_id FROM let_go ORDER BY inspection_id DESC LIMIT 1").fetchone()
         except sqlite3.Error as error:
             raise RecordError(f"{folder}: the index cannot be read ({error})") from None
-    return (START, 0) if row is None else (row["chain"], row["inspection_id"])
+    return (CHAIN_START, 0) if row is None else (row["chain"], row["inspection_id"])

@@ -4,7 +4,7 @@ import shutil
 import time
 from enum import IntEnum
 
-from station.settings import ArchiveSettings
+from station.settings.model import ArchiveSettings
 
 LOOK_S = 1.0
 

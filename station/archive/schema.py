@@ -5,22 +5,17 @@ holds the chain before. What is taken out or changed afterwards breaks the chain
 """
 
 import hashlib
-import os
 import sqlite3
-import time
 from pathlib import Path
 
 from station.errors import RecordError
+from station.files.sqlite import CHAIN_START, PATIENCE_S, connect_to_read, use_wal
 
 NAME = "index.sqlite"
 VERSION = 2
-START = "0" * 64
-"""Chain before the first record."""
 SEARCHABLE_SCORE = 0.05
 """Segments with a lower score of NOK are not in the table of segments; the record has them all."""
 
-PATIENCE_S = 2.0
-"""Time for which another process that uses the same file is waited for."""
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS records (
     inspection_id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -94,23 +89,6 @@ def open_index(folder: Path) -> sqlite3.Connection:
     return connection
 
 
-def use_wal(connection: sqlite3.Connection) -> None:
-    """Put a database into WAL mode, each commit durable. Raises sqlite3.Error.
-
-    Only the first time changes the file. SQLite does not wait for others then, whatever the connection's timeout, so it is done here.
-    """
-    until_s = time.monotonic() + PATIENCE_S
-    while True:
-        try:
-            connection.execute("PRAGMA journal_mode = WAL")
-            break
-        except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or time.monotonic() > until_s:
-                raise
-        time.sleep(0.01)
-    connection.execute("PRAGMA synchronous = FULL")
-
-
 def read_index(folder: Path) -> sqlite3.Connection:
     """The index for reading. Raises RecordError if there is none, or one of another version."""
     path = folder / NAME
@@ -128,24 +106,6 @@ def read_index(folder: Path) -> sqlite3.Connection:
     return connection
 
 
-def connect_to_read(path: Path) -> sqlite3.Connection:
-    """Open a database in WAL mode, also where nobody may write the log next to it. Raises sqlite3.Error.
-
-    One that another process makes at this moment has no tables yet: they are waited for.
-    """
-    writable = os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists()
-    how = "mode=ro" if writable else "mode=ro&immutable=1"
-    connection = sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=PATIENCE_S)
-    until_s = time.monotonic() + PATIENCE_S
-    try:
-        while connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None and time.monotonic() < until_s:
-            time.sleep(0.01)
-    except BaseException:
-        connection.close()
-        raise
-    return connection
-
-
 def link(before: str, record_sha256: str) -> str:
     """The chain with one more record."""
     return hashlib.sha256(f"{before}{record_sha256}".encode()).hexdigest()
@@ -156,5 +116,5 @@ def last_link(connection: sqlite3.Connection) -> str:
     for table in ("records", "let_go"):
         row = connection.execute(f"SELECT chain FROM {table} ORDER BY inspection_id DESC LIMIT 1").fetchone()
         if row is not None:
-            return row[0] or START
-    return START
+            return row[0] or CHAIN_START
+    return CHAIN_START

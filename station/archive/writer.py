@@ -11,12 +11,12 @@ from pathlib import Path
 from station.archive.room import Disk, Room
 from station.archive.schema import SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
-from station.durable import sync_folder, write_whole
 from station.errors import ImageError, RecordError
-from station.imagefile import encode_png
-from station.lock import hold
+from station.files.durable import sync_folder, write_whole
+from station.files.image import encode_png
+from station.files.lock import hold
 from station.records import Part, Provenance, Record, to_json
-from station.settings import ArchiveSettings
+from station.settings.model import ArchiveSettings
 
 INCOMING = "incoming.png"
 TRIAL_S = 1.0

@@ -1,7 +1,7 @@
 """The camera that the settings name; the only place that knows all makes. A library is imported only if its camera is used."""
 
 from station.camera.port import Camera
-from station.camera_settings import AnyCamera, PylonSettings, ReplaySettings
+from station.settings.camera import AnyCamera, PylonSettings, ReplaySettings
 
 
 def make_camera(settings: AnyCamera) -> Camera:

@@ -5,9 +5,9 @@ from datetime import UTC, datetime
 import numpy as np
 from pypylon import genicam, pylon
 
-from station.camera_settings import PylonSettings
 from station.domain import Frame
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
+from station.settings.camera import PylonSettings
 
 SOURCES = {"software": "Software", "line1": "Line1"}
 

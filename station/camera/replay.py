@@ -2,10 +2,10 @@
 
 from datetime import UTC, datetime
 
-from station.camera_settings import ReplaySettings
 from station.domain import Frame, Origin
 from station.errors import CameraLost, FrameDamaged, ImageError
-from station.imagefile import SUFFIXES, read_image
+from station.files.image import SUFFIXES, read_image
+from station.settings.camera import ReplaySettings
 
 
 class ReplayCamera:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
-from station.durable import write_whole
 from station.errors import ModelError
+from station.files.durable import write_whole
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from station.defects import DefectKind
 from station.errors import SettingsError
-from station.settings import LimitSettings
+from station.settings.model import LimitSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,13 +8,13 @@ from pathlib import Path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
-from station.channel import RequestClient, Subscriber
+from station.channel.zeromq import RequestClient, Subscriber
 from station.errors import WeldgateError
-from station.panel import theme, words
-from station.panel.bridge import Bridge
-from station.panel.session import Session
+from station.panel.look import theme, words
+from station.panel.session.bridge import Bridge
+from station.panel.session.session import Session
 from station.panel.window import Window
-from station.settings_file import load
+from station.settings.file import load
 
 
 def open_window(path: Path) -> Window:

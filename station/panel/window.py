@@ -21,51 +21,51 @@ from PySide6.QtWidgets import (
 )
 
 from station.domain import Origin
-from station.panel import theme, words
-from station.panel.card import label, scrolled
-from station.panel.keys import Keys
-from station.panel.live.page import LivePage
-from station.panel.page import Page
-from station.panel.session import Session
-from station.panel.words import data, translate
-from station.plc.alarms import TEXTS
+from station.panel.look import theme, words
+from station.panel.look.words import data, translate
+from station.panel.pages.live.page import LivePage
+from station.panel.pages.page import Page
+from station.panel.session.session import Session
+from station.panel.widgets.card import label, scrolled
+from station.panel.widgets.keys import Keys
+from station.plc.map.alarms import TEXTS
 
 AGE_MS = 500
 NAV_PX, HEADER_PX = 170, 56
 
 
 def _history(session: Session) -> Page:
-    from station.panel.history.page import HistoryPage
+    from station.panel.pages.history.page import HistoryPage
 
     return HistoryPage(session)
 
 
 def _statistics(session: Session) -> Page:
-    from station.panel.statistics.page import StatisticsPage
+    from station.panel.pages.statistics.page import StatisticsPage
 
     return StatisticsPage(session)
 
 
 def _line(session: Session) -> Page:
-    from station.panel.line.page import LinePage
+    from station.panel.pages.line.page import LinePage
 
     return LinePage(session)
 
 
 def _alarms(session: Session) -> Page:
-    from station.panel.alarms.page import AlarmsPage
+    from station.panel.pages.alarms.page import AlarmsPage
 
     return AlarmsPage(session)
 
 
 def _setup(session: Session) -> Page:
-    from station.panel.setup.page import SetupPage
+    from station.panel.pages.setup.page import SetupPage
 
     return SetupPage(session)
 
 
 def _replay(session: Session) -> Page:
-    from station.panel.replay.page import ReplayPage
+    from station.panel.pages.replay.page import ReplayPage
 
     return ReplayPage(session)
 

@@ -14,10 +14,9 @@ of any other trigger is refused.
 from dataclasses import replace
 
 from station.defects import Reason
-from station.plc import codes
 from station.plc.handshake_state import Inputs, Phase, State, Step, Times
-from station.plc.port import Command, Result, Trigger
-from station.plc.registers import (
+from station.plc.map import codes
+from station.plc.map.registers import (
     ALL_SEGMENTS,
     REFUSED,
     CommandCode,
@@ -26,6 +25,7 @@ from station.plc.registers import (
     Offline,
     VerdictCode,
 )
+from station.plc.port import Command, Result, Trigger
 
 
 def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from station.plc.map.registers import Control, Offline, all_bits
 from station.plc.port import Command, Health, Result, Trigger
-from station.plc.registers import Control, Offline, all_bits
 
 ALL_CONTROL = all_bits(Control)
 """Every bit of CONTROL: what counts as held until the PLC is heard."""

@@ -10,11 +10,10 @@ from concurrent.futures import Future
 from contextlib import suppress
 
 from station.errors import LineError
-from station.plc import status_window
 from station.plc.handshake import step
 from station.plc.handshake_state import ALL_CONTROL, Inputs, Phase, State, Step, Times
-from station.plc.port import Command, Counts, Health, LineState, Result, Trigger
-from station.plc.registers import (
+from station.plc.map import status_window
+from station.plc.map.registers import (
     COMMAND_START,
     COMMAND_WORDS,
     STATUS_START,
@@ -29,8 +28,9 @@ from station.plc.registers import (
     pack_window,
     unpack_window,
 )
-from station.plc.wire import WAITING, Wire, make_wire
-from station.settings import PlcSettings
+from station.plc.port import Command, Counts, Health, LineState, Result, Trigger
+from station.plc.wire.windows import WAITING, Wire, make_wire
+from station.settings.model import PlcSettings
 
 log = logging.getLogger("weldgate.line")
 

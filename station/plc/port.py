@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from station.plc.registers import CommandCode, Control, Flags, Offline, Status, VerdictCode
+from station.plc.map.registers import CommandCode, Control, Flags, Offline, Status, VerdictCode
 
 
 @dataclass(frozen=True, slots=True)

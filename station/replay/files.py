@@ -8,7 +8,7 @@ from pathlib import Path
 from station.archive.reader import Row, find
 from station.archive.schema import NAME
 from station.errors import ImageError
-from station.imagefile import SUFFIXES
+from station.files.image import SUFFIXES
 
 
 @dataclass(frozen=True, slots=True)

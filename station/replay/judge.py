@@ -9,8 +9,8 @@ import numpy as np
 
 from station.domain import SEGMENTS, Image, Inspection
 from station.errors import ImageError
-from station.imagefile import read_marked
-from station.inspection import Inspector
+from station.files.image import read_marked
+from station.inspection.inspector import Inspector
 from station.replay.files import Source
 
 

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from station.analysis.report.page import Rows, truth_rows
+from station.analysis.report.strip import Gallery, Weld, strip
+from station.analysis.report.template import render
+from station.analysis.truth import Errors, errors
 from station.domain import Ring
-from station.durable import write_whole
+from station.files.durable import write_whole
 from station.records import Provenance
 from station.replay.compare import Comparison
 from station.replay.files import Source
-from station.report.page import Rows, truth_rows
-from station.report.strip import Gallery, Weld, strip
-from station.report.template import render
-from station.report.truth import Errors, errors
 
 SHOWN = 40
 """Pictures of each kind."""

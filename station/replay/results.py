@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from station.durable import write_whole
+from station.files.durable import write_whole
 
 
 def write_json(path: Path, entries: dict[str, dict[str, Any]]) -> None:

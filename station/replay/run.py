@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import TextIO
 
 from station.errors import ModelError
-from station.inspection import Inspector
-from station.recipe import load_inspector
+from station.inspection.inspector import Inspector
+from station.inspection.loading import load_inspector
 from station.records import Provenance
 from station.replay.files import Source
 from station.replay.judge import Outcome, judge_image
-from station.settings import Settings
+from station.settings.model import Settings
 
 AHEAD = 4
 """Images handed out for each process: enough to keep it busy, few enough to be stopped."""

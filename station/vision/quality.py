@@ -5,7 +5,7 @@ import numpy as np
 
 from station.defects import Reason
 from station.domain import Image, Quality
-from station.settings import QualitySettings
+from station.settings.model import QualitySettings
 
 DARK_DN = 2
 SATURATED_DN = 254

@@ -13,9 +13,9 @@ from station.camera.choose import make_camera
 from station.camera.port import Camera
 from station.camera.pylon import PylonCamera
 from station.camera.replay import ReplayCamera
-from station.camera_settings import AnyCamera, CameraSettings, PylonSettings, ReplaySettings
 from station.domain import Image, Origin
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
+from station.settings.camera import AnyCamera, CameraSettings, PylonSettings, ReplaySettings
 from synth.feed import Feed
 
 Make = Callable[[list[Image]], Camera]

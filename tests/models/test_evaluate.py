@@ -19,8 +19,8 @@ from models.report import lines, summary, write_report
 from models.train import fine_tune
 from station.classify.drift import Reference, read_reference
 from station.classify.onnx import LOOK, Classifier, RingNetwork
-from station.inspection import Inspector
-from station.settings import ModelSettings, QualitySettings, WeldSettings
+from station.inspection.inspector import Inspector
+from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from station.vision.unwrap import segments
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import FRAMES, label_with, labels

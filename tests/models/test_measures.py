@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from models.crops import OK
 from models.measures import Counts, calibration_error, choose_thresholds, count, refused
 from models.novelty import describe, distances, limit, part_distances
+from station.analysis.truth import interval
 from station.classify.decision import segment_kind
-from station.report.truth import interval
 from tests.models.made import HOLE, MISSING
 from tests.parts import scores_of, thresholds
 

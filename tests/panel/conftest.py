@@ -9,14 +9,15 @@ import shiboken6
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from deploy.demo import free_ports, station_toml
+from deploy.demo.ports import free_ports
+from deploy.demo.station import station_toml
 from station.archive.schema import open_index
-from station.channel import Publisher
-from station.panel import theme, words
+from station.channel.zeromq import Publisher
 from station.panel.app import open_window
+from station.panel.look import theme, words
 from station.panel.window import Window
-from station.settings import ChannelSettings
-from station.settings_file import load
+from station.settings.file import load
+from station.settings.model import ChannelSettings
 from tests.desk import Desk
 
 

@@ -5,13 +5,14 @@ from dataclasses import replace
 
 from pytestqt.qtbot import QtBot
 
-from station.answer import verdict_code
+from station.channel.events import PartEvent, StatusEvent
+from station.channel.requests import Answer
 from station.domain import Inspection, Origin, Purpose
-from station.events import PartEvent, StatusEvent
-from station.panel.pending import NO_CONNECTION
-from station.panel.session import Session
-from station.plc.port import Counts
-from station.plc.registers import (
+from station.engine.plc_result import verdict_code
+from station.journal.users import Level, User
+from station.panel.session.pending import NO_CONNECTION
+from station.panel.session.session import Session
+from station.plc.map.registers import (
     COMMAND_START,
     COMMAND_WORDS,
     STATUS_START,
@@ -23,9 +24,8 @@ from station.plc.registers import (
     pack_window,
     unpack_window,
 )
-from station.plc.status_window import decoded
-from station.requests import Answer
-from station.users import Level, User
+from station.plc.map.status_window import decoded
+from station.plc.port import Counts
 from tests.desk import PIN, Desk
 from tests.parts import record
 

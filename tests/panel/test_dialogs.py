@@ -8,9 +8,9 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication, QDialogButtonBox, QFileDialog, QLineEdit, QMessageBox
 from pytestqt.qtbot import QtBot
 
-from station.panel.dialogs import ask_file
+from station.journal.users import Level
+from station.panel.widgets.dialogs import ask_file
 from station.panel.window import Window
-from station.users import Level
 from tests.desk import Desk
 from tests.panel.made import log_in
 

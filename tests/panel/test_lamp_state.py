@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from station.channel.events import STATUS_LOST_S, PartEvent, StatusEvent
 from station.defects import Reason
 from station.domain import Inspection, Origin, Purpose
-from station.events import STATUS_LOST_S, PartEvent, StatusEvent
-from station.panel.live.lamp_state import FRESH_S, GONE_S, WHY_OFFLINE, Tone, lamp
-from station.plc.alarms import Alarm
-from station.plc.registers import Offline, VerdictCode
+from station.panel.session.lamp import FRESH_S, GONE_S, WHY_OFFLINE, Tone, lamp
+from station.plc.map.alarms import Alarm
+from station.plc.map.registers import Offline, VerdictCode
 from tests.panel.made import part, status
 from tests.parts import nok_inspection, ok_inspection
 

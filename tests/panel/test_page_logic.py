@@ -10,29 +10,29 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from station.archive.reader import Row
-from station.archive.review import Opinion, Review, State
-from station.panel.history.search import FOUND, MIN_SCORE, SEARCHED, TO_CONFIRM, Search
-from station.panel.live.lamp_state import foot
-from station.panel.login_state import LoginState
-from station.panel.pending import NO_CONNECTION, PATIENCE_S, Pending
-from station.panel.setup.login_view import Said, login_view, said
-from station.panel.setup.masters_table import MasterState, master_rows
-from station.panel.setup.what_if_state import Missing, Values, WhatIfState
-from station.requests import MIN_REASON, Answer
-from station.users import Level, User
+from station.channel.requests import MIN_REASON, Answer
+from station.journal.reviews import Opinion, Review, State
+from station.journal.users import Level, User
+from station.panel.pages.history.search import FOUND, MIN_SCORE, SEARCHED, TO_CONFIRM, Search
+from station.panel.pages.setup.login_view import Said, login_view, said
+from station.panel.pages.setup.masters_table import MasterState, master_rows
+from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState
+from station.panel.session.lamp import foot
+from station.panel.session.login_state import LoginState
+from station.panel.session.pending import NO_CONNECTION, PATIENCE_S, Pending
 from tests.conftest import ROOT
 from tests.panel.made import part
 from tests.parts import ok_inspection
 
 NOW = datetime(2026, 11, 27, 12, tzinfo=UTC)
 PURE = (
-    "station.panel.history.search",
-    "station.panel.live.lamp_state",
-    "station.panel.login_state",
-    "station.panel.pending",
-    "station.panel.setup.login_view",
-    "station.panel.setup.masters_table",
-    "station.panel.setup.what_if_state",
+    "station.panel.pages.history.search",
+    "station.panel.session.lamp",
+    "station.panel.session.login_state",
+    "station.panel.session.pending",
+    "station.panel.pages.setup.login_view",
+    "station.panel.pages.setup.masters_table",
+    "station.panel.pages.setup.what_if_state",
 )
 
 

@@ -11,23 +11,24 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
-from deploy.demo import free_ports, running, shipped_parts, station_toml
-from station import adjustments
-from station.accounts import save_user
-from station.archive.journal import Kind, entries
-from station.archive.review import Opinion, State, reviews
+from deploy.demo.ports import free_ports
+from deploy.demo.station import running, shipped_parts, station_toml
 from station.defects import Reason
-from station.imagefile import read_image
+from station.files.image import read_image
+from station.journal.accounts import save_user
+from station.journal.journal import Kind, entries
+from station.journal.reviews import Opinion, State, reviews
+from station.journal.users import Level
 from station.panel.app import open_window
-from station.panel.history.page import HistoryPage
-from station.panel.live.page import LivePage
-from station.panel.replay.page import ReplayPage
-from station.panel.setup.page import SetupPage
+from station.panel.pages.history.page import HistoryPage
+from station.panel.pages.live.page import LivePage
+from station.panel.pages.replay.page import ReplayPage
+from station.panel.pages.setup.page import SetupPage
 from station.panel.window import HEADER_PX, NAV_PX, Window
-from station.plc.alarms import Alarm
-from station.plc.registers import VerdictCode
+from station.plc.map.alarms import Alarm
+from station.plc.map.registers import VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
-from station.users import Level
+from station.settings import adjustments
 from synth.feed import Feed
 
 LEFT = Qt.MouseButton.LeftButton

@@ -7,29 +7,30 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from station import adjustments, orders
-from station.alarmlog import AlarmLog
-from station.archive.journal import Entry, Kind, entries
-from station.archive.journal_writer import append
 from station.archive.writer import Archive
+from station.channel.preview import make_preview
+from station.channel.requests import Changed, HoldService
 from station.domain import Frame, Image, Origin
-from station.panel.alarms.page import AlarmsPage
-from station.panel.line.page import LinePage
-from station.panel.live.page import LivePage
-from station.panel.pending import NO_CONNECTION
-from station.panel.session import Session
-from station.panel.setup.page import SetupPage
-from station.panel.setup.recipe import RecipePage
-from station.panel.statistics.page import StatisticsPage
+from station.engine import orders
+from station.engine.alarm_log import AlarmLog
+from station.inspection.loading import prepare
+from station.journal.journal import Entry, Kind, entries
+from station.journal.journal_writer import append
+from station.journal.users import Level
+from station.panel.pages.alarms.page import AlarmsPage
+from station.panel.pages.line.page import LinePage
+from station.panel.pages.live.page import LivePage
+from station.panel.pages.setup.page import SetupPage
+from station.panel.pages.setup.recipe import RecipePage
+from station.panel.pages.statistics.page import StatisticsPage
+from station.panel.session.pending import NO_CONNECTION
+from station.panel.session.session import Session
 from station.panel.window import Window
-from station.plc.alarms import Alarm
-from station.plc.registers import Status
-from station.preview import make_preview
-from station.recipe import prepare
+from station.plc.map.alarms import Alarm
+from station.plc.map.registers import Status
 from station.records import Part
-from station.requests import Changed, HoldService
-from station.settings_file import load
-from station.users import Level
+from station.settings import adjustments
+from station.settings.file import load
 from tests.desk import PIN, Desk
 from tests.panel.made import log_in, part, status
 from tests.parts import label_with, nok_inspection, ok_inspection
@@ -96,7 +97,7 @@ def test_without_an_engine_nobody_logs_in_and_it_is_said(window: Window, qtbot: 
 def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
     window: Window, desk: Desk, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("station.panel.pending.PATIENCE_S", 0.5)
+    monkeypatch.setattr("station.panel.session.pending.PATIENCE_S", 0.5)
     log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
     window.go(2)
     page = window.page

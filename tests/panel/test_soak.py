@@ -6,7 +6,7 @@ from pathlib import Path
 from PySide6.QtWidgets import QLabel
 from pytestqt.qtbot import QtBot
 
-from deploy.soak_panel import soak
+from deploy.chaos.soak_panel import soak
 
 
 def test_many_parts_leave_no_widget_thread_or_connection_behind(tmp_path: Path, qtbot: QtBot) -> None:

@@ -7,22 +7,22 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
-from station.channel import Publisher, Subscriber
+from station.channel.preview import make_preview
+from station.channel.zeromq import Publisher, Subscriber
 from station.domain import Image, Ring
+from station.engine.orders import TestPicture
 from station.errors import LineError
-from station.orders import TestPicture
-from station.panel import theme
-from station.panel.history.page import HistoryPage
-from station.panel.keys import Keys
-from station.panel.live.page import LivePage
-from station.panel.setup.page import SetupPage
+from station.journal.users import Level
+from station.panel.look import theme
+from station.panel.pages.history.page import HistoryPage
+from station.panel.pages.live.page import LivePage
+from station.panel.pages.setup.page import SetupPage
+from station.panel.widgets.keys import Keys
 from station.panel.window import HEADER_PX, NAV_PX, PAGES, Window
-from station.plc.alarms import Alarm
+from station.plc.map.alarms import Alarm
+from station.plc.map.registers import Offline
 from station.plc.port import Counts
-from station.plc.registers import Offline
-from station.preview import make_preview
-from station.settings import ChannelSettings
-from station.users import Level
+from station.settings.model import ChannelSettings
 from tests.desk import Desk
 from tests.panel.made import log_in, part, status
 from tests.parts import label_with, nok_inspection, ok_inspection

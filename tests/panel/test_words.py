@@ -9,17 +9,17 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from deploy.translations import TS, release, untranslated, update
-from station.archive.journal import Kind
-from station.archive.review import Opinion, State
+from deploy.docs.translations import TS, release, untranslated, update
 from station.defects import Reason
 from station.domain import Origin, Purpose
-from station.panel import words
-from station.panel.live.lamp_state import WHY_OFFLINE
-from station.panel.theme import THEMES, Colors
-from station.panel.vocabulary import WORDS
-from station.plc.alarms import TEXTS
-from station.users import Level
+from station.journal.journal import Kind
+from station.journal.reviews import Opinion, State
+from station.journal.users import Level
+from station.panel.look import words
+from station.panel.look.theme import THEMES, Colors
+from station.panel.look.vocabulary import WORDS
+from station.panel.session.lamp import WHY_OFFLINE
+from station.plc.map.alarms import TEXTS
 
 
 def messages(ts: Path) -> set[tuple[str, str, str]]:

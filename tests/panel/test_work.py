@@ -8,7 +8,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from station.errors import RecordError
-from station.panel.work import Told, WorkBar
+from station.panel.widgets.work import Told, WorkBar
 
 
 @pytest.fixture

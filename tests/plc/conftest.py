@@ -2,11 +2,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from deploy.demo import free_ports
+from deploy.demo.ports import free_ports
 from station.plc.line import ModbusLine, make_line
+from station.plc.map.registers import Offline
 from station.plc.port import Health
-from station.plc.registers import Offline
-from station.settings import PlcSettings
+from station.settings.model import PlcSettings
 
 
 @pytest.fixture

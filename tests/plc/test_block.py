@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from station.plc.block.definition import POINTS, REFUSALS, body
 from station.plc.block.transcribe import Block, tokens
-from station.plc.registers import (
+from station.plc.map.registers import (
     BY_NAME,
     COMMAND_START,
     COMMAND_WORDS,

@@ -7,8 +7,8 @@ import pytest
 
 from station.__main__ import main
 from station.errors import RecordError
-from station.plc.buslog import BusLog, Edge, edges, read_bus, tail_bus
-from station.plc.registers import (
+from station.plc.bus_log import BusLog, Edge, edges, read_bus, tail_bus
+from station.plc.map.registers import (
     COMMAND_START,
     COMMAND_WORDS,
     STATUS_START,

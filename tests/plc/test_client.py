@@ -9,16 +9,16 @@ from contextlib import suppress
 
 import pytest
 
-from deploy.demo import free_ports
-from deploy.judge import WELL, Judge, judged
+from deploy.chaos.judge import WELL, Judge, judged
+from deploy.demo.ports import free_ports
 from station.plc.line import make_line
-from station.plc.modbus import ModbusServer
+from station.plc.map.registers import STATUS_START, STATUS_WORDS, Offline, VerdictCode
 from station.plc.port import Result, Trigger
-from station.plc.registers import STATUS_START, STATUS_WORDS, Offline, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
-from station.plc.wire import SHOWS, ClientWire
-from station.settings import PlcSettings
+from station.plc.wire.modbus import ModbusServer
+from station.plc.wire.windows import SHOWS, ClientWire
+from station.settings.model import PlcSettings
 
 
 def ok(trigger: Trigger) -> Result:

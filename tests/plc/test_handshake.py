@@ -7,12 +7,12 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from deploy.judge import judged
-from station.plc import status_window
+from deploy.chaos.judge import judged
 from station.plc.handshake import ready, step
 from station.plc.handshake_state import Inputs, State, Step, Times
+from station.plc.map import status_window
+from station.plc.map.registers import REFUSED, CommandCode, Control, Offline, Status, VerdictCode, number
 from station.plc.port import Command, Counts, Health, Result, Trigger
-from station.plc.registers import REFUSED, CommandCode, Control, Offline, Status, VerdictCode, number
 
 WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7)
 LOST = Health(ready=False, offline=Offline.CAMERA_LOST, failure=True, config_crc=7)

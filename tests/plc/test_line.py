@@ -10,14 +10,12 @@ from typing import Any
 
 import pytest
 
-from deploy.demo import free_ports
-from deploy.judge import judged
+from deploy.chaos.judge import judged
+from deploy.demo.ports import free_ports
 from station.errors import LineError
-from station.plc.buslog import BusLog, read_bus
+from station.plc.bus_log import BusLog, read_bus
 from station.plc.line import ModbusLine, make_line
-from station.plc.modbus import ModbusClient
-from station.plc.port import Command, Health, Trigger
-from station.plc.registers import (
+from station.plc.map.registers import (
     STATUS_START,
     STATUS_WORDS,
     CommandCode,
@@ -26,9 +24,11 @@ from station.plc.registers import (
     VerdictCode,
     unpack_window,
 )
+from station.plc.port import Command, Health, Trigger
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows, RemoteWindows
-from station.settings import PlcSettings
+from station.plc.wire.modbus import ModbusClient
+from station.settings.model import PlcSettings
 
 WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7)
 

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station.plc.framing import frames
 from station.plc.line import ModbusLine
+from station.plc.map.registers import STATUS_WORDS, Offline
 from station.plc.port import Health
-from station.plc.registers import STATUS_WORDS, Offline
+from station.plc.wire.framing import frames
 
 FRAMED, NOISE = 92_000, 8_000
 BATCH = 10

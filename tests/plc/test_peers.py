@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from deploy.judge import Judge, judged
+from deploy.chaos.judge import Judge, judged
 from station.plc.line import ModbusLine
+from station.plc.map.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, VerdictCode
 from station.plc.port import Result, Trigger
-from station.plc.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, VerdictCode
 
 HERE = Path(__file__).resolve().parent
 

@@ -9,13 +9,12 @@ from tree_sitter import Language, Parser
 
 from station import __version__
 from station.__main__ import main
-from station.plc import status_window
 from station.plc.block.definition import VARIABLES
 from station.plc.block.dialects import scl, structured_text, symbols
-from station.plc.document import as_csv
 from station.plc.handshake_state import State
-from station.plc.port import Counts, Health
-from station.plc.registers import (
+from station.plc.map import status_window
+from station.plc.map.document import as_csv
+from station.plc.map.registers import (
     BY_NAME,
     COMMAND_START,
     COMMAND_WORDS,
@@ -34,6 +33,7 @@ from station.plc.registers import (
     unpack,
     unpack_window,
 )
+from station.plc.port import Counts, Health
 from tests.conftest import ROOT
 
 
@@ -44,7 +44,7 @@ def test_registers_fill_their_windows_without_overlap() -> None:
 
 @given(st.sampled_from([r for r in MAP if r.kind in ("u16", "u32")]), st.data())
 def test_numbers_come_back(register: object, data: st.DataObject) -> None:
-    from station.plc.registers import Register
+    from station.plc.map.registers import Register
 
     assert isinstance(register, Register)
     top = 0xFFFF if register.kind == "u16" else 0xFFFFFFFF

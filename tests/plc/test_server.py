@@ -8,12 +8,12 @@ from dataclasses import replace
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
-from deploy.judge import judged
+from deploy.chaos.judge import judged
 from station.errors import LineError
 from station.plc.line import ModbusLine, make_line
+from station.plc.map.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Flags, VerdictCode
 from station.plc.port import Trigger
-from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Flags, VerdictCode
-from station.settings import PlcSettings
+from station.settings.model import PlcSettings
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:pymodbus")
 

@@ -7,18 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from deploy.demo import free_ports
+from deploy.demo.ports import free_ports
 from station.__main__ import main
 from station.errors import LineError, SettingsError
-from station.plc.certificates import make_certificates
 from station.plc.line import make_line
-from station.plc.modbus import ModbusClient
+from station.plc.map.registers import Offline
 from station.plc.port import Health
-from station.plc.registers import Offline
 from station.plc.simulated.line import SimulatedLine
 from station.plc.simulated.windows import RemoteWindows
-from station.plc.tls import client_context, server_context
-from station.settings import PlcSettings, TlsSettings
+from station.plc.wire.certificates import make_certificates
+from station.plc.wire.modbus import ModbusClient
+from station.plc.wire.tls import client_context, server_context
+from station.settings.model import PlcSettings, TlsSettings
 
 
 @pytest.fixture(scope="module")

@@ -34,7 +34,7 @@ change(
     ("\nSTATUS_WORDS =", "\nSTATUS_WORDS = 1 +"),
 )
 change(
-    "station.plc.registers",
+    "station.plc.map.registers",
     ("    ABORT = 128\n", "    ABORT = 128\n    NINTH = 256\n"),
     ("    DRIFT = 4\n", "    DRIFT = 4\n    FOURTH = 8\n"),
     (
@@ -47,17 +47,17 @@ change(
 import pytest  # noqa: E402
 from pydantic import TypeAdapter  # noqa: E402
 
-from deploy.demo import free_ports  # noqa: E402
+from deploy.demo.ports import free_ports  # noqa: E402
 from station.plc.block.dialects import structured_text  # noqa: E402
-from station.plc.buslog import edges  # noqa: E402
-from station.plc.document import as_markdown  # noqa: E402
+from station.plc.bus_log import edges  # noqa: E402
 from station.plc.handshake_state import State  # noqa: E402
 from station.plc.line import make_line  # noqa: E402
-from station.plc.modbus import ModbusClient  # noqa: E402
+from station.plc.map.document import as_markdown  # noqa: E402
+from station.plc.map.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Control, Flags, Value  # noqa: E402
 from station.plc.port import LineState  # noqa: E402
-from station.plc.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Control, Flags, Value  # noqa: E402
 from station.plc.simulated.line import SimulatedLine  # noqa: E402
-from station.settings import PlcSettings  # noqa: E402
+from station.plc.wire.modbus import ModbusClient  # noqa: E402
+from station.settings.model import PlcSettings  # noqa: E402
 
 NINTH, FOURTH = Control["NINTH"], Flags["FOURTH"]
 SIZES = f"windows of {COMMAND_WORDS} and {STATUS_WORDS} registers"

@@ -1,8 +1,8 @@
 import pytest
 
 from station.classify.onnx import Classifier, RingNetwork
-from station.inspection import Inspector
-from station.settings import ModelSettings, QualitySettings, WeldSettings
+from station.inspection.inspector import Inspector
+from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from tests.conftest import MODEL, RING_MODEL
 
 

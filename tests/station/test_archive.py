@@ -11,9 +11,9 @@ from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import Frame, Image, Inspection, Origin
 from station.errors import RecordError
-from station.imagefile import read_image
+from station.files.image import read_image
 from station.records import Part, Record
-from station.settings import ArchiveSettings
+from station.settings.model import ArchiveSettings
 from tests.parts import nok_inspection, ok_inspection, provenance
 
 ROOMY = {"min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1}

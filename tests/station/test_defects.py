@@ -15,10 +15,10 @@ from station.classify.thresholds import Limit, Thresholds, in_use
 from station.defects import KINDS, DefectKind, Reason, Width, kind_named, kind_of
 from station.domain import SEGMENTS, Ring, SegmentScores
 from station.errors import SettingsError
-from station.plc.registers import MAP_VERSION
+from station.plc.map.registers import MAP_VERSION
 from station.records import from_json, to_json
-from station.settings import LimitSettings
-from station.settings_file import load
+from station.settings.file import load
+from station.settings.model import LimitSettings
 from tests.station.test_settings import GOOD
 
 OLD_RECORDS = Path(__file__).parent / "old_records"

@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deploy.summary import write_json as write_summary
-from station.archive import export
+from deploy.demo.summary import write_json as write_summary
+from station.analysis import export
 from station.classify.drift import Reference, write_reference
-from station.durable import replacing, write_whole
+from station.files.durable import replacing, write_whole
 from station.replay.results import write_csv
 from synth.errors import SynthError
 from synth.storage import write_bytes
@@ -23,7 +23,7 @@ from tests.conftest import ROOT
 HALF = """
 import os, signal, sys
 from pathlib import Path
-from station.durable import replacing
+from station.files.durable import replacing
 with replacing(Path(sys.argv[1])) as part:
     part.write_bytes(b"half of it")
     os.kill(os.getpid(), signal.SIGKILL)

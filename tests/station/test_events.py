@@ -6,9 +6,8 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station.channel import _EVENTS
-from station.plc.port import Counts, LineState
-from station.plc.registers import (
+from station.channel.zeromq import _EVENTS
+from station.plc.map.registers import (
     COMMAND_START,
     COMMAND_WORDS,
     STATUS_START,
@@ -19,7 +18,8 @@ from station.plc.registers import (
     pack_window,
     unpack_window,
 )
-from station.plc.status_window import decoded
+from station.plc.map.status_window import decoded
+from station.plc.port import Counts, LineState
 from tests.panel.made import status
 
 STATES = st.builds(

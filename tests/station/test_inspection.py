@@ -7,8 +7,8 @@ from station.classify.onnx import Classifier, Judged, RingNetwork
 from station.defects import Reason
 from station.domain import SEGMENTS, Image, Inspection, Verdict
 from station.errors import ModelError
-from station.inspection import Inspector
-from station.settings import ModelSettings, QualitySettings, WeldSettings
+from station.inspection.inspector import Inspector
+from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from tests.parts import label_with, labels, ok_inspection
 
 

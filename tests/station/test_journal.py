@@ -11,16 +11,16 @@ from pathlib import Path
 
 import pytest
 
-import station.accounts
+import station.journal.accounts
 from station.__main__ import main
-from station.accounts import log_in, log_out, remove_user, save_user
-from station.archive.journal import NAME, Kind, entries, verify_journal
-from station.archive.journal_writer import append
 from station.archive.reader import find
 from station.archive.schema import NAME as INDEX
 from station.archive.schema import open_index
 from station.errors import LoginError, RecordError
-from station.users import Level, User, users
+from station.journal.accounts import log_in, log_out, remove_user, save_user
+from station.journal.journal import NAME, Kind, entries, verify_journal
+from station.journal.journal_writer import append
+from station.journal.users import Level, User, users
 
 
 def test_entries_are_found_by_kind_and_subject(tmp_path: Path) -> None:
@@ -154,5 +154,5 @@ def test_five_wrong_pins_lock_for_a_minute_and_are_logged(folder: Path, monkeypa
         def now(cls, tz: object = None) -> datetime:  # type: ignore[override]
             return datetime.now(UTC) + timedelta(seconds=61)
 
-    monkeypatch.setattr(station.accounts, "datetime", Later)
+    monkeypatch.setattr(station.journal.accounts, "datetime", Later)
     assert log_in(folder, "Bob", "56789").level is Level.SETTER

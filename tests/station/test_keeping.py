@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from station.__main__ import main
-from station.archive.forms import FORMATS
+from station.analysis.forms import FORMATS
 from station.archive.prune import Housekeeping, prune, sampled
 from station.archive.reader import find, read_records, verify
 from station.archive.room import Room
@@ -22,9 +22,9 @@ from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import Frame, Image, Inspection, Origin
 from station.errors import RecordError
-from station.imagefile import read_image
+from station.files.image import read_image
 from station.records import Part
-from station.settings import ArchiveSettings, KeepSettings
+from station.settings.model import ArchiveSettings, KeepSettings
 from tests.parts import label_with, nok_inspection, ok_inspection, provenance
 
 NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)

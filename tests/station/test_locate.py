@@ -4,7 +4,7 @@ import pytest
 
 from station.domain import Image
 from station.errors import LocateError
-from station.inspection import Inspector
+from station.inspection.inspector import Inspector
 from tests.parts import label_with, labels
 
 

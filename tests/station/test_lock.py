@@ -11,17 +11,16 @@ from pathlib import Path
 
 import pytest
 
-from station import adjustments
 from station.archive.writer import Archive
-from station.errors import RecordError, SettingsError
-from station.lock import hold
-from station.settings import ArchiveSettings
+from station.errors import RecordError
+from station.files.lock import hold
+from station.settings.model import ArchiveSettings
 from tests.conftest import ROOT
 
 HOLDER = """
 import sys
 from pathlib import Path
-from station.lock import hold
+from station.files.lock import hold
 lock = hold(Path(sys.argv[1]))
 print("held", flush=True)
 sys.stdin.read()
@@ -85,18 +84,3 @@ def test_an_archive_in_use_is_refused_until_its_engine_is_gone(tmp_path: Path) -
             Archive(settings)
         assert str(caught.value) == f"{tmp_path}: another engine keeps its records there; stop it or set archive.folder"
     Archive(settings).close()
-
-
-def test_changes_are_refused_while_another_window_saves(tmp_path: Path) -> None:
-    settings = tmp_path / "station.toml"
-    with (
-        held_elsewhere(tmp_path / "station.adjusted.lock"),
-        pytest.raises(SettingsError, match="another window saves just now"),
-        adjustments.editing(settings),
-    ):
-        pass
-    with adjustments.editing(settings):
-        pass
-    absent = tmp_path / "absent" / "station.toml"
-    with pytest.raises(SettingsError, match="cannot be written"), adjustments.editing(absent):
-        pass

@@ -12,20 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station import orders
-from station.accounts import save_user
-from station.archive.journal import Entry, Kind, entries
-from station.archive.journal_writer import append
-from station.archive.review import Opinion, reviews
 from station.archive.writer import Archive
-from station.domain import Frame, Image, Origin
-from station.errors import LoginError, RecordError, SettingsError
-from station.logins import GONE_S, Logins
-from station.operator_desk import FRESH_S, OTHER_SERVES, OperatorDesk, Reply
-from station.plc.port import Counts
-from station.plc.registers import Status
-from station.records import Part
-from station.requests import (
+from station.channel.requests import (
     TOO_OLD,
     Acknowledge,
     Answer,
@@ -46,10 +34,22 @@ from station.requests import (
     StayLoggedIn,
     TakeTestImage,
 )
-from station.rights import CHANGES, NEEDED, check, needed
-from station.service import LEASE_S
-from station.settings import ArchiveSettings
-from station.users import Level, User, users
+from station.domain import Frame, Image, Origin
+from station.engine import orders
+from station.engine.logins import GONE_S, Logins
+from station.engine.operator_desk import FRESH_S, OTHER_SERVES, OperatorDesk, Reply
+from station.engine.rights import CHANGES, NEEDED, check, needed
+from station.engine.service_mode import LEASE_S
+from station.errors import LoginError, RecordError, SettingsError
+from station.journal.accounts import save_user
+from station.journal.journal import Entry, Kind, entries
+from station.journal.journal_writer import append
+from station.journal.reviews import Opinion, reviews
+from station.journal.users import Level, User, users
+from station.plc.map.registers import Status
+from station.plc.port import Counts
+from station.records import Part
+from station.settings.model import ArchiveSettings
 from tests.parts import label_with, nok_inspection, provenance
 
 IDLE_S = 600.0
@@ -199,7 +199,7 @@ def test_a_fault_in_one_request_is_answered_and_ends_nothing(desk: Desk, monkeyp
         raise ZeroDivisionError
 
     with monkeypatch.context() as patched:
-        patched.setattr("station.operator_desk.append", broken)
+        patched.setattr("station.engine.operator_desk.append", broken)
         assert "internal error" in desk.ask(ResetCounts(), token).refusal
     assert desk.ask(ResetCounts(), token).done
     assert desk.given == [orders.ResetCounts("Sam")]
@@ -211,7 +211,7 @@ def test_what_cannot_be_noted_is_not_done(desk: Desk, monkeypatch: pytest.Monkey
     def full(*_: object, **__: object) -> None:
         raise RecordError("the disk is full")
 
-    monkeypatch.setattr("station.operator_desk.append", full)
+    monkeypatch.setattr("station.engine.operator_desk.append", full)
     for request in (ResetCounts(), TakeTestImage(), CheckMaster("M"), HoldService(), Acknowledge(5)):
         assert desk.ask(request, token).refusal == "the disk is full"
     assert desk.given == []

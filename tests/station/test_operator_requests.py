@@ -7,14 +7,10 @@ from pathlib import Path
 import pytest
 import zmq
 
-from deploy.demo import free_ports, station_toml
-from station import adjustments, orders, released
-from station.archive.journal import Kind, entries
+from deploy.demo.ports import free_ports
+from deploy.demo.station import station_toml
 from station.archive.schema import open_index
-from station.channel import MAX_BYTES
-from station.orders import UseSettings
-from station.recipe import prepare
-from station.requests import (
+from station.channel.requests import (
     Acknowledge,
     Changed,
     ChangeSettings,
@@ -26,8 +22,15 @@ from station.requests import (
     StayLoggedIn,
     TakeTestImage,
 )
-from station.settings_file import load
-from station.users import Level
+from station.channel.zeromq import MAX_BYTES
+from station.engine import active_settings as released
+from station.engine import orders
+from station.engine.orders import UseSettings
+from station.inspection.loading import prepare
+from station.journal.journal import Kind, entries
+from station.journal.users import Level
+from station.settings import adjustments
+from station.settings.file import load
 from tests.desk import PIN, Desk, PlainWindow
 
 SHARPNESS = ("recipes", "1", "quality", "min_sharpness")

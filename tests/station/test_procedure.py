@@ -8,24 +8,24 @@ from pathlib import Path
 
 import pytest
 
-from station.alarmlog import AlarmLog
 from station.archive.reader import read_records
 from station.archive.writer import Archive
 from station.camera.reconnecting import Grab, ReconnectingCamera
+from station.channel.events import Event, PartEvent
 from station.defects import Reason
 from station.domain import Frame, Image, Origin, Purpose, Verdict
+from station.engine.alarm_log import AlarmLog
+from station.engine.listener import Listener
+from station.engine.procedure import Procedure
+from station.engine.self_checks import Master, Watch
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
-from station.events import Event, PartEvent
-from station.inspection import Inspector
-from station.listener import Listener
-from station.plc.codes import ERROR_ABORTED, ERROR_DEADLINE
+from station.inspection.inspector import Inspector
+from station.inspection.loading import Loaded
 from station.plc.line import make_line
+from station.plc.map.codes import ERROR_ABORTED, ERROR_DEADLINE
+from station.plc.map.registers import VerdictCode
 from station.plc.port import Health, LineState, Result, Trigger
-from station.plc.registers import VerdictCode
-from station.procedure import Procedure
-from station.recipe import Loaded
-from station.settings import ArchiveSettings, PlcSettings
-from station.watch import Master, Watch
+from station.settings.model import ArchiveSettings, PlcSettings
 from tests.parts import label_with, provenance
 
 TRIGGER = Trigger(trigger_id=7, serial="CELL-7", accepted_s=0.0, number=1)

@@ -14,13 +14,13 @@ from station.__main__ import main
 from station.archive.writer import Archive
 from station.domain import Frame, Image, Inspection, Origin
 from station.errors import ImageError
-from station.imagefile import read_marked
-from station.inspection import Inspector
-from station.recipe import load_inspector
+from station.files.image import read_marked
+from station.inspection.inspector import Inspector
+from station.inspection.loading import load_inspector
 from station.records import Part
 from station.replay.files import sources
-from station.settings import ArchiveSettings, Settings, for_images, for_recipe
-from station.settings_file import load
+from station.settings.file import load
+from station.settings.model import ArchiveSettings, Settings, for_images, for_recipe
 from tests.conftest import MODEL
 from tests.parts import FRAMES, label_with, labels
 

@@ -9,12 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from station.__main__ import main
+from station.analysis.report.figures import BAD, TEXT, angle_counts, bars, clock_face, trend
 from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose
 from station.records import Part
-from station.report.figures import BAD, TEXT, angle_counts, bars, clock_face, trend
-from station.settings import ArchiveSettings
+from station.settings.model import ArchiveSettings
 from tests.parts import label_with, nok_inspection, ok_inspection, provenance
 
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)

@@ -8,22 +8,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station.archive.export import export
+from station.analysis.export import export
+from station.analysis.statistics import shift_of, summarise
+from station.analysis.what_if import what_if
 from station.archive.reader import read_records
-from station.archive.review import Opinion, Review, State, possible, reviews
-from station.archive.review_writer import give
 from station.archive.room import Room
-from station.archive.statistics import shift_of, summarise
-from station.archive.whatif import what_if
 from station.archive.writer import Archive
-from station.condition import Seen, alarms, health
 from station.defects import Reason
 from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Verdict
+from station.engine.health import Seen, alarms, health
 from station.errors import LoginError
-from station.plc.alarms import Alarm
-from station.plc.registers import Offline
+from station.journal.review_writer import give
+from station.journal.reviews import Opinion, Review, State, possible, reviews
+from station.plc.map.alarms import Alarm
+from station.plc.map.registers import Offline
 from station.records import Part, Record
-from station.settings import ArchiveSettings, QualitySettings
+from station.settings.model import ArchiveSettings, QualitySettings
 from tests.parts import label_with, nok_inspection, ok_inspection, provenance, record, scores_of, thresholds
 
 OPINIONS = st.dictionaries(st.sampled_from(["Ada", "Bob", "Cy"]), st.sampled_from(list(Opinion)))

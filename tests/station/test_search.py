@@ -14,7 +14,7 @@ from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import Inspection, Origin
 from station.records import Part
-from station.settings import ArchiveSettings
+from station.settings.model import ArchiveSettings
 from tests.parts import nok_inspection, ok_inspection, provenance
 
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)

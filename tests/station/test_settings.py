@@ -2,9 +2,9 @@ from pathlib import Path
 
 import pytest
 
-from station.camera_settings import PylonSettings, ReplaySettings
 from station.errors import SettingsError
-from station.settings_file import load
+from station.settings.camera import PylonSettings, ReplaySettings
+from station.settings.file import load
 from tests.conftest import ROOT
 
 GOOD = '[camera]\nkind = "pylon"\nserial = "1"\n'

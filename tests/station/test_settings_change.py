@@ -12,18 +12,19 @@ from types import FrameType
 
 import pytest
 
-from station import adjustments, released
-from station.archive.journal import Kind, entries
 from station.camera.reconnecting import ReconnectingCamera
+from station.channel.requests import FAULT, Changed
+from station.engine import active_settings as released
+from station.engine.active_settings import Released
+from station.engine.orders import Order, OrderQueue, Reload, Ticket, UseSettings
+from station.engine.settings_change import NO_MOMENT, NOT_IN_FILE, OTHERWISE, SettingsChange
+from station.engine.settings_use import CAMERA_REFUSES, use_settings
 from station.errors import ModelError, SettingsError
-from station.orders import Order, OrderQueue, Reload, Ticket, UseSettings
-from station.recipe import Loaded, prepare
-from station.released import Released
-from station.requests import FAULT, Changed
-from station.settings import Settings
-from station.settings_change import NO_MOMENT, NOT_IN_FILE, OTHERWISE, SettingsChange
-from station.settings_file import load
-from station.settings_use import CAMERA_REFUSES, use_settings
+from station.inspection.loading import Loaded, prepare
+from station.journal.journal import Kind, entries
+from station.settings import adjustments
+from station.settings.file import load
+from station.settings.model import Settings
 from tests.conftest import MODEL, RING_MODEL
 from tests.desk import StubCamera
 
@@ -187,7 +188,7 @@ def test_a_file_that_cannot_be_replaced_leaves_camera_and_settings(engine: Engin
 
 
 def test_a_cycle_that_never_has_a_moment_changes_nothing_later(path: Path, quick: Loaded, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("station.settings_change.PATIENCE_S", 0.2)
+    monkeypatch.setattr("station.engine.settings_change.PATIENCE_S", 0.2)
     engine = Engine(path, turns=False)
     try:
         with pytest.raises(SettingsError, match=NO_MOMENT):
@@ -216,7 +217,7 @@ class Killed(BaseException):
 
 
 WATCHED = tuple(f"station/{name}.py" for name in ("settings_change", "settings_use", "adjustments", "durable", "released"))
-WATCHED += ("station/archive/journal_writer.py", "station/settings_file.py")
+WATCHED += ("station/journal/journal_writer.py", "station/settings/file.py")
 
 
 def killed_at(line: int, work: Callable[[], None]) -> bool:

@@ -15,12 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from station.__main__ import main
+from station.analysis.truth import errors, interval, read_truth
 from station.archive.writer import Archive
 from station.domain import Frame, Image, Origin
 from station.errors import RecordError
 from station.records import Part
-from station.report.truth import errors, interval, read_truth
-from station.settings import ArchiveSettings
+from station.settings.model import ArchiveSettings
 from tests.parts import FRAMES, label_with, labels, nok_inspection, ok_inspection, provenance
 
 WORDS = st.sampled_from(["OK", "NOK", "ERROR"])

@@ -9,7 +9,7 @@ from tests.conftest import ROOT
 
 def test_kills_lose_nothing_that_could_have_been_seen() -> None:
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-m", "deploy.chaos_records", "--kills", "40", "--seed", "3"],
+        [sys.executable, "-W", "error", "-m", "deploy.chaos.records", "--kills", "40", "--seed", "3"],
         cwd=ROOT,
         capture_output=True,
         text=True,

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from deploy.demo import free_ports
+from deploy.demo.ports import free_ports
 from station.archive.reader import read_records
-from station.channel import Subscriber
-from station.events import StatusEvent
-from station.plc.registers import Offline
-from station.settings import ChannelSettings
+from station.channel.events import StatusEvent
+from station.channel.zeromq import Subscriber
+from station.plc.map.registers import Offline
+from station.settings.model import ChannelSettings
 from tests.conftest import MODEL, RING_MODEL, ROOT
 from tests.parts import FRAMES, labels
 
@@ -34,7 +34,7 @@ def run(*command: str, **environment: str) -> "subprocess.CompletedProcess[str]"
 def test_demo_on_the_shipped_frames(tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     count = len(labels())
-    done = run("deploy.demo", "--headless", "--parts", str(count), "--json", str(out), "--records", str(tmp_path / "records"))
+    done = run("deploy.demo.run", "--headless", "--parts", str(count), "--json", str(out), "--records", str(tmp_path / "records"))
     assert done.returncode == 0, done.stdout + done.stderr
     report = json.loads(out.read_text())
     assert [p["truth"] for p in report["parts"]] == [item["truth"] for item in labels()]

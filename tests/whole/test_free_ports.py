@@ -6,9 +6,9 @@ from contextlib import closing
 
 import pytest
 
-from deploy.demo import RESERVED, free_ports
-from station.plc.modbus import ModbusServer
-from station.plc.registers import STATUS_START, STATUS_WORDS
+from deploy.demo.ports import RESERVED, free_ports
+from station.plc.map.registers import STATUS_START, STATUS_WORDS
+from station.plc.wire.modbus import ModbusServer
 
 
 def _take(port: int) -> None:

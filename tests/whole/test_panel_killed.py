@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from deploy.chaos_panel import run
+from deploy.chaos.panel import run
 from station.archive.reader import find
 
 

@@ -10,26 +10,26 @@ from pathlib import Path
 
 import pytest
 
-from deploy.demo import free_ports
-from station import adjustments
-from station.alarmlog import AlarmLog
-from station.archive.journal import Kind, entries
+from deploy.demo.ports import free_ports
 from station.archive.reader import find
 from station.archive.writer import Archive
 from station.camera.pylon import PylonCamera
+from station.channel.events import Event, LookEvent, PartEvent, StatusEvent
 from station.domain import Frame, Image, Verdict
-from station.events import Event, LookEvent, PartEvent, StatusEvent
-from station.listener import Listener
-from station.orders import Order, OrderQueue, Reload, ResetCounts, Service, TestPicture
-from station.plc.alarms import Alarm
+from station.engine.active_settings import Released
+from station.engine.alarm_log import AlarmLog
+from station.engine.listener import Listener
+from station.engine.orders import Order, OrderQueue, Reload, ResetCounts, Service, TestPicture
+from station.engine.startup import make_camera, make_cycle
+from station.inspection.loading import prepare
+from station.journal.journal import Kind, entries
 from station.plc.line import make_line
-from station.plc.modbus import ModbusClient
-from station.plc.registers import Control, Flags, Offline, Status, VerdictCode
+from station.plc.map.alarms import Alarm
+from station.plc.map.registers import Control, Flags, Offline, Status, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
-from station.recipe import prepare
-from station.released import Released
-from station.settings_file import load
-from station.startup import make_camera, make_cycle
+from station.plc.wire.modbus import ModbusClient
+from station.settings import adjustments
+from station.settings.file import load
 from synth.feed import Feed
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import label_with
@@ -325,6 +325,6 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
     def broken(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("station.procedure.answer", broken)
+    monkeypatch.setattr("station.engine.procedure.answer", broken)
     assert not running.part("FAULT", good).accepted
     assert (heard("FAULT").told, heard("FAULT").record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)

@@ -16,18 +16,18 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import models.report
+import station.analysis.report.page
 import station.replay.report
-import station.report.page
 from models.evaluate import Evaluation, PartResult, evaluate_lot
 from station.__main__ import main
+from station.analysis.report.template import UNSEEN, render
 from station.archive.writer import Archive
 from station.classify.onnx import Classifier, RingNetwork
 from station.defects import Reason
 from station.domain import Frame, Image, Inspection, Origin
-from station.inspection import Inspector
+from station.inspection.inspector import Inspector
 from station.records import Part
-from station.report.template import UNSEEN, render
-from station.settings import ArchiveSettings, ModelSettings, QualitySettings, WeldSettings
+from station.settings.model import ArchiveSettings, ModelSettings, QualitySettings, WeldSettings
 from tests.conftest import MODEL, RING_MODEL, ROOT
 from tests.parts import FRAMES, label_with, nok_inspection, ok_inspection, provenance
 from tests.station.test_report import NOON
@@ -100,7 +100,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory, frames: dict[str, Image], ev
     folder = tmp_path_factory.mktemp("pages")
     given: dict[Path, object] = {}
     with pytest.MonkeyPatch.context() as patch:
-        for module in (station.report.page, station.replay.report, models.report):
+        for module in (station.analysis.report.page, station.replay.report, models.report):
             patch.setattr(module, "render", _noting(given))
         records = _records(folder / "records", frames[label_with("hole")["frame"]])
         (folder / "truth.json").write_text(json.dumps({HOSTILE + "0": "NOK", HOSTILE + "1": "OK"}))
@@ -188,7 +188,7 @@ IMPORTS = """
 import sys
 opened = []
 sys.addaudithook(lambda event, facts: opened.append(str(facts[0])) if event == "open" else None)
-import models.report, station.replay.report, station.report.page
+import models.report, station.replay.report, station.analysis.report.page
 print([name for name in opened if name.endswith((".j2", ".css"))], "jinja2" in sys.modules)
 """
 

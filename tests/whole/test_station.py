@@ -13,26 +13,26 @@ import cv2
 import numpy as np
 import pytest
 
-from deploy.demo import free_ports
-from station.alarmlog import AlarmLog
+from deploy.demo.ports import free_ports
 from station.archive.reader import read_records
 from station.archive.writer import Archive
 from station.camera.pylon import PylonCamera
+from station.channel.events import Event, PartEvent
 from station.classify.drift import Reference, write_reference
 from station.classify.onnx import LOOK
 from station.defects import Reason
 from station.domain import Frame, Image, Purpose, Verdict
+from station.engine.alarm_log import AlarmLog
+from station.engine.listener import Listener
+from station.engine.orders import Order, TestPicture
+from station.engine.self_checks import Watch
+from station.engine.startup import make_cycle
 from station.errors import ModelError, RecordError
-from station.events import Event, PartEvent
-from station.listener import Listener
-from station.orders import Order, TestPicture
+from station.inspection.loading import prepare
 from station.plc.line import ModbusLine, make_line
-from station.plc.registers import CommandCode, Flags, VerdictCode
+from station.plc.map.registers import CommandCode, Flags, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
-from station.recipe import prepare
-from station.settings import Settings
-from station.startup import make_cycle
-from station.watch import Watch
+from station.settings.model import Settings
 from synth.feed import Feed
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import label_with, labels

@@ -117,7 +117,7 @@ def test_spawned_workers_find_the_installed_rooms(installed: Path, hostile: Path
 CHILD = """
 import subprocess, sys, weldgate
 weldgate.find_rooms()
-from station.process import room_command
+from station.files.installation import room_command
 sys.exit(subprocess.run([*room_command("station"), "--version"]).returncode)
 """
 

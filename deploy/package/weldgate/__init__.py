@@ -29,7 +29,7 @@ def run_models() -> int:
 
 def run_demo() -> int:
     """Run `weldgate-demo`."""
-    return _run("deploy.demo")
+    return _run("deploy.demo.run")
 
 
 def find_rooms() -> None:

@@ -6,7 +6,7 @@ Only what IEC 61131-3 and SCL have in common is used, so that the dialects diffe
 from dataclasses import dataclass, field
 from typing import Literal
 
-from station.plc.registers import BY_NAME, COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Control, Flags, Register, Status
+from station.plc.map.registers import BY_NAME, COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Control, Flags, Register, Status
 
 NAME = "WeldgateStation"
 RECORD = "WeldgateStatus"

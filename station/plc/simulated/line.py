@@ -11,8 +11,7 @@ from typing import TypeVar
 from station.errors import LineError
 from station.plc.block.definition import NO_RESULT, NOT_READY, REFUSALS
 from station.plc.block.transcribe import Block
-from station.plc.modbus import ModbusClient
-from station.plc.registers import (
+from station.plc.map.registers import (
     BY_NAME,
     COMMAND_START,
     COMMAND_WORDS,
@@ -30,6 +29,7 @@ from station.plc.registers import (
     unpack_window,
 )
 from station.plc.simulated.windows import RemoteWindows, Windows
+from station.plc.wire.modbus import ModbusClient
 
 Outcome = TypeVar("Outcome")
 

@@ -5,9 +5,9 @@ import random
 from dataclasses import dataclass
 
 from station.errors import LineError
-from station.plc.modbus import ModbusClient
 from station.plc.simulated.line import Answer, Knob, SimulatedLine
 from station.plc.simulated.windows import OwnWindows, RemoteWindows, Windows
+from station.plc.wire.modbus import ModbusClient
 
 KNOB_SHARE = 0.1
 """Share of the parts in which a named knob is turned."""

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from station.plc.modbus import ModbusClient, ModbusServer
-from station.plc.registers import STATUS_START, STATUS_WORDS
+from station.plc.map.registers import STATUS_START, STATUS_WORDS
+from station.plc.wire.modbus import ModbusClient, ModbusServer
 
 STORM = 12
 """Connections that come and go in a storm."""

@@ -1,0 +1,1 @@
+"""Benchmarks, each a command: what it takes, in one table."""

@@ -1,0 +1,117 @@
+"""Times of each step from trigger to RESULT_VALID on the emulated camera. `make bench`."""
+
+import argparse
+import asyncio
+import os
+import sys
+import tempfile
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+
+from deploy.demo.ports import free_ports
+from deploy.demo.station import SERIAL, shipped_parts
+from station.archive.writer import Archive
+from station.channel.events import Event, PartEvent
+from station.engine.alarm_log import AlarmLog
+from station.engine.listener import Listener
+from station.engine.startup import make_cycle
+from station.errors import WeldgateError
+from station.files.image import read_image
+from station.files.installation import SHIPPED_NETWORKS
+from station.inspection.loading import prepare
+from station.plc.line import make_line
+from station.plc.simulated.line import Answer, SimulatedLine
+from station.settings.model import Settings
+from synth.feed import Feed
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run parts through the whole station and print median and p99 of each step."""
+    parser = argparse.ArgumentParser(prog="bench", description=__doc__)
+    parser.add_argument("--parts", type=int, default=100, help="number of parts (default: %(default)s)")
+    arguments = parser.parse_args(argv)
+    if arguments.parts < 1:
+        parser.error("--parts must be at least 1")
+    with tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
+        try:
+            answers, parts = measure(Path(folder), arguments.parts)
+        except WeldgateError as error:
+            print(f"bench: {error}", file=sys.stderr)
+            return 2
+    _print(answers, parts)
+    return 0
+
+
+def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
+    """Judge `count` shipped frames in turn; what the line saw and what the engine told."""
+    feed = Feed(folder / "feed", SERIAL)
+    os.environ.update(feed.environment)
+    settings = Settings.model_validate(
+        {
+            "camera": {"kind": "pylon", "device_class": "BaslerCamEmu", "serial": SERIAL},
+            "model": {"path": SHIPPED_NETWORKS / "weldgate.onnx", "ring_path": SHIPPED_NETWORKS / "ring.onnx"},
+            "archive": {"folder": folder / "records"},
+            "plc": {"port": free_ports(1)[0]},
+        }
+    )
+    events: list[Event] = []
+    loaded = prepare(settings, 1)
+    archive, line = Archive(settings.archive), make_line(settings.plc)
+    line.start()
+    alarm_log = AlarmLog(settings.archive.folder)
+    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None), alarm_log)
+    stop = threading.Event()
+    thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
+    thread.start()
+    try:
+        answers = asyncio.run(_drive(line.port, feed, count))
+    finally:
+        stop.set()
+        thread.join(timeout=10)
+        line.stop()
+        alarm_log.close()
+        archive.close()
+    return answers, [e for e in events if isinstance(e, PartEvent)]
+
+
+async def _drive(port: int, feed: Feed, count: int) -> list[Answer]:
+    images = [read_image(part.path) for part in shipped_parts()]
+    line = SimulatedLine.at("127.0.0.1", port, accept_simulated=True)
+    answers = []
+    try:
+        feed.show(images[0])
+        await line.connect()
+        for index in track(range(count), description="parts", transient=True):
+            feed.show(images[index % len(images)])
+            answers.append(await line.inspect(f"B{index}"))
+    finally:
+        await line.close()
+    return answers
+
+
+def _print(answers: list[Answer], parts: list[PartEvent]) -> None:
+    timings = [part.record.inspection.timing for part in parts]
+    rows = (
+        ("grab", [t.grab_ms for t in timings]),
+        ("locate", [t.locate_ms for t in timings]),
+        ("unwrap and quality", [t.unwrap_ms for t in timings]),
+        ("classify", [t.classify_ms for t in timings]),
+        ("record", [p.record_ms for p in parts]),
+        ("publish", [p.publish_ms for p in parts]),
+        ("trigger to RESULT_VALID, as the line sees it", [a.trigger_to_valid_ms for a in answers]),
+    )
+    table = Table("step", "median ms", "p99 ms", title=f"{len(answers)} parts of 4200 x 2160 on the emulated camera")
+    for name, values in rows:
+        known = [v for v in values if v is not None]
+        table.add_row(name, f"{np.median(known):.1f}", f"{np.percentile(known, 99):.1f}")
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Proofs against misbehaving neighbours: PLCs, kills, windows that hang."""

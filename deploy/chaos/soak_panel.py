@@ -1,0 +1,179 @@
+"""Eight hours of events in fast motion through the window: its memory must stay flat, no widget, thread or connection be left behind."""
+
+import argparse
+import gc
+import os
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from PySide6.QtCore import QEventLoop, QTimer
+from PySide6.QtWidgets import QApplication
+
+from deploy.demo.ports import free_ports
+from deploy.demo.station import shipped_parts, station_toml
+from station.archive.writer import Archive
+from station.channel.events import PartEvent, Preview, StatusEvent
+from station.channel.preview import make_preview
+from station.channel.zeromq import Publisher
+from station.domain import Frame, Origin
+from station.files.image import read_image
+from station.inspection.loading import prepare
+from station.panel.app import open_window
+from station.panel.window import PAGES, Window
+from station.plc.map.registers import (
+    COMMAND_WORDS,
+    STATUS_START,
+    STATUS_WORDS,
+    TEST_F32,
+    TEST_U32,
+    Control,
+    Offline,
+    Status,
+    VerdictCode,
+    pack_window,
+)
+from station.plc.port import Counts, LineState
+from station.records import Part, Record
+from station.settings.file import load
+from station.settings.model import Settings
+
+HOURS, PACE_S, STATUSES = 8, 2.0, 8
+"""A part every two seconds, four status events a second."""
+ROUNDS = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """What the process holds."""
+
+    memory_mb: float
+    widgets: int
+    threads: int
+    files: int
+    """Open files and sockets."""
+
+    @staticmethod
+    def now() -> "Level":
+        """Linux alone."""
+        gc.collect()
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+        files = len(list(Path("/proc/self/fd").iterdir()))
+        return Level(pages * os.sysconf("SC_PAGE_SIZE") / 1e6, len(QApplication.allWidgets()), threading.active_count(), files)
+
+
+def soak(folder: Path, parts: int) -> list[Level]:
+    """Levels after each tenth of the parts; needs an application."""
+    path = folder / "station.toml"
+    path.write_text(station_toml(folder / "records", *free_ports(4)))
+    settings = load(path)
+    record, events = _made(settings)
+    publisher = Publisher(settings.channel)
+    window = open_window(path)
+    window.show()
+    levels: list[Level] = []
+    try:
+        for number in range(1, parts + 1):
+            for status in events[0]:
+                publisher.send(replace(status, at_s=time.monotonic()))
+            part = replace(events[1], at_s=time.monotonic(), record=replace(record, inspection_id=number))
+            publisher.send(part)
+            if number % 10 == 0:
+                publisher.show(replace(events[2], inspection_id=number))
+            if number % 40 == 0:
+                window.go(number // 40 % len(PAGES))
+            if number % 10 == 0:
+                _live(30)
+            if number % (parts // ROUNDS) == 0:
+                window.speak("de" if window.session.received.parts and number // (parts // ROUNDS) % 2 else "en")
+                for index in range(len(PAGES)):
+                    window.go(index)
+                _until_heard(window, number)
+                levels.append(Level.now())
+    finally:
+        window.close()
+        publisher.close()
+    return levels
+
+
+def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEvent, Preview]]:
+    """One real part with its record and picture."""
+    loaded = prepare(settings, 1)
+    image = read_image(shipped_parts()[0].path)
+    archive = Archive(settings.archive)
+    frame = Frame(image, datetime.now(UTC), "soak", Origin.SIMULATED)
+    inspection = loaded.inspector.inspect(image)
+    record = archive.commit(archive.begin(frame), inspection, Part("SOAK", 1, Origin.SIMULATED), loaded.provenance, frame.grabbed_at)
+    archive.close()
+    words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1}))
+    now_s = time.monotonic()
+    line = LineState(
+        control=Control(0),
+        status=Status(0),
+        offline=Offline.NONE,
+        error_code=0,
+        counts=Counts(ok=1),
+    )
+    status = StatusEvent(
+        at_s=now_s,
+        started_s=now_s,
+        reloaded_s=0.0,
+        camera_there=True,
+        camera_message="",
+        origin=Origin.SIMULATED,
+        line=line,
+        command_words=(0,) * COMMAND_WORDS,
+        status_words=words,
+    )
+    part = PartEvent(
+        at_s=now_s,
+        record=record,
+        novel=False,
+        drift=None,
+        told=VerdictCode.NOK,
+        record_ms=5.0,
+        publish_ms=1.0,
+    )
+    return record, ([status] * STATUSES, part, make_preview(1, image, inspection.ring))
+
+
+def _live(milliseconds: int) -> None:
+    loop = QEventLoop()
+    QTimer.singleShot(milliseconds, loop.quit)
+    loop.exec()
+
+
+def _until_heard(window: Window, number: int) -> None:
+    for _ in range(200):
+        last = window.session.received.last
+        if last is not None and last.record.inspection_id == number:
+            return
+        _live(20)
+    raise TimeoutError("the window did not hear all parts")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Print the levels; 0 if they stay flat over the second half."""
+    parser = argparse.ArgumentParser(prog="soak-panel", description=__doc__)
+    parser.add_argument("--parts", type=int, default=int(HOURS * 3600 / PACE_S), help="default: %(default)s, eight hours")
+    arguments = parser.parse_args(argv)
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    app = QApplication(sys.argv[:1])
+    with tempfile.TemporaryDirectory(prefix="weldgate-") as name:
+        levels = soak(Path(name), arguments.parts)
+    for index, level in enumerate(levels, 1):
+        print(f"{index * 10:3d} %  {level.memory_mb:6.1f} MB  {level.widgets} widgets  {level.threads} threads  {level.files} files")
+    half, last = levels[len(levels) // 2 - 1], levels[-1]
+    grown = last.memory_mb - half.memory_mb
+    print(f"second half: {grown:+.1f} MB")
+    app.quit()
+    return 0 if grown < 5 and (last.widgets, last.threads, last.files) <= (half.widgets, half.threads, half.files) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

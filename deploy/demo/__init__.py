@@ -1,0 +1,1 @@
+"""The demo: emulated camera, rendered parts, simulated line and the station, with one command."""

@@ -1,0 +1,34 @@
+"""Free ports on loopback, for a station and its neighbours on one machine."""
+
+import atexit
+import os
+import socket
+from collections import deque
+
+RESERVED = 64
+"""Number of ports that are kept free for servers that are still starting."""
+_reserved: deque[socket.socket] = deque()
+
+
+def free_ports(count: int) -> list[int]:
+    """Return ports on loopback that the system has free, kept from all other processes until `RESERVED` more have been asked for.
+
+    On POSIX a socket that is bound but does not listen keeps a port from being given away, and lets a server have it.
+    """
+    if not _reserved:
+        atexit.register(_give_back)
+    entries = [socket.socket() for _ in range(count)]
+    for entry in entries:
+        if os.name == "posix":
+            entry.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        entry.bind(("127.0.0.1", 0))
+    ports = [int(entry.getsockname()[1]) for entry in entries]
+    _reserved.extend(entries)
+    while len(_reserved) > (RESERVED if os.name == "posix" else 0):
+        _reserved.popleft().close()
+    return ports
+
+
+def _give_back() -> None:
+    while _reserved:
+        _reserved.popleft().close()

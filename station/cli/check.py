@@ -1,0 +1,82 @@
+"""What is wrong with this station, and what to do: one line for each thing looked at."""
+
+import socket
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+from station.archive.room import Room
+from station.archive.writer import Archive
+from station.camera.choose import make_camera
+from station.errors import WeldgateError
+from station.inspection.loading import prepare
+from station.plc.line import make_line
+from station.settings.file import load
+from station.settings.model import Settings
+
+
+def check(path: Path) -> Iterator[tuple[str, str | None]]:
+    """(name, None) for each thing in order, (name, what is wrong) for each that is not."""
+    try:
+        settings = load(path)
+    except WeldgateError as error:
+        yield "settings", str(error)
+        return
+    yield "settings", None
+    for name, look in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC", _plc)):
+        try:
+            look(settings)
+        except WeldgateError as error:
+            yield name, str(error)
+        else:
+            yield name, None
+
+
+def _model(settings: Settings) -> None:
+    for number in sorted({1, *settings.recipes}):
+        prepare(settings, number)
+
+
+def _archive(settings: Settings) -> None:
+    archive = Archive(settings.archive)
+    try:
+        room = archive.room()
+        if room is not Room.ENOUGH:
+            limit = (settings.archive.min_free_mb, settings.archive.thin_free_mb, settings.archive.warn_free_mb)[room]
+            raise WeldgateError(f"{settings.archive.folder}: less than {limit} MB free; make room, or keep less under archive.keep")
+    finally:
+        archive.close()
+
+
+def _camera(settings: Settings) -> None:
+    camera = make_camera(settings.camera)
+    try:
+        camera.open()
+    finally:
+        camera.close()
+
+
+def _plc(settings: Settings) -> None:
+    make_line(settings.plc)  # certificates
+    if settings.plc.mode == "client":
+        _reached(settings.plc.host, settings.plc.port)
+    else:
+        _free(settings)
+
+
+def _reached(host: str, port: int) -> None:
+    try:
+        socket.create_connection((host, port), timeout=2).close()
+    except OSError as error:
+        raise WeldgateError(f"PLC {host}:{port} cannot be reached ({error}); check address, cable and firewall, or set plc.host") from None
+
+
+def _free(settings: Settings) -> None:
+    with closing(socket.socket()) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((settings.plc.host, settings.plc.port))
+        except OSError as error:
+            raise WeldgateError(
+                f"{settings.plc.host}:{settings.plc.port} is not free ({error.strerror}); is the engine running? else set plc.port"
+            ) from None

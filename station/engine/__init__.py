@@ -1,0 +1,1 @@
+"""The engine: one trigger, one part, one record, one answer to the PLC."""

@@ -1,0 +1,113 @@
+"""Answers the windows in threads of its own: neither the hash of a PIN nor a journal delays a part."""
+
+import logging
+import queue
+import threading
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from station.channel.events import Event, StatusEvent
+from station.channel.requests import FAULT, Answer, ChangeSettings, Message, ReloadSettings
+from station.channel.zeromq import RequestServer
+from station.engine.active_settings import Released
+from station.engine.logins import Logins
+from station.engine.operator_desk import OperatorDesk, Reply
+from station.engine.orders import Order
+from station.engine.settings_change import SettingsChange
+from station.errors import WeldgateError
+from station.plc.port import Counts
+
+log = logging.getLogger("weldgate.requests")
+
+POLL_S = 0.05
+MAX_CHANGES = 16
+"""Changes of settings that may wait for the one before."""
+TOO_MANY = "too many changes of settings wait: try again"
+
+
+class OperatorRequests:
+    """Owns accounts, settings, acknowledgements and their journal entries; the cycle gets orders alone."""
+
+    def __init__(self, server: RequestServer, path: Path, released: Released, hand_over: Callable[[Order], None]) -> None:
+        """`path`: of the settings file; `hand_over` gives an order to the cycle."""
+        self._server, self._stop = server, threading.Event()
+        self._status: StatusEvent | None = None
+        logins = Logins(lambda: released.settings.panel.logout_min * 60)
+        self._desk = OperatorDesk(released.settings.archive.folder, logins, hand_over, self._counts)
+        self._change = SettingsChange(path, released, hand_over, self._recipe, self._stop)
+        self._answers: queue.SimpleQueue[tuple[bytes, Answer]] = queue.SimpleQueue()
+        self._changes: queue.Queue[Callable[[], None]] = queue.Queue(MAX_CHANGES)
+        try:
+            self._change.settle()
+        except WeldgateError as error:
+            log.error("changes of the run before: %s", error)
+        self._threads = [
+            threading.Thread(target=self._run, name="requests", daemon=True),
+            threading.Thread(target=self._make_changes, name="settings", daemon=True),
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    def saw(self, event: Event) -> None:
+        """Note what the cycle says of itself."""
+        if isinstance(event, StatusEvent):
+            self._status = event
+
+    def _counts(self) -> Counts | None:
+        return None if self._status is None else self._status.line.counts
+
+    def _recipe(self) -> int:
+        return 1 if self._status is None else self._status.recipe
+
+    def _run(self) -> None:
+        while not self._stop.is_set():
+            try:
+                self._serve_once()
+            except Exception:  # the windows are served on, whatever one of them sent
+                log.exception("requests")
+        self._desk.close()
+
+    def _serve_once(self) -> None:
+        for sender, message in self._server.received(POLL_S):
+            self._desk.handle(message, partial(self._reply, sender), self._queue_change)
+        while not self._answers.empty():
+            self._server.answer(*self._answers.get())
+        self._desk.tick()
+
+    def _reply(self, sender: bytes, answer: Answer) -> None:
+        """Called from both threads; the socket belongs to one."""
+        self._answers.put((sender, answer))
+
+    def _queue_change(self, who: str, message: Message, reply: Reply) -> None:
+        try:
+            self._changes.put_nowait(partial(self._make_change, who, message, reply))
+        except queue.Full:
+            raise WeldgateError(TOO_MANY) from None
+
+    def _make_changes(self) -> None:
+        while not self._stop.is_set():
+            try:
+                self._changes.get(timeout=POLL_S)()
+            except queue.Empty:
+                continue
+
+    def _make_change(self, who: str, message: Message, reply: Reply) -> None:
+        request, refusal = message.request, FAULT
+        try:
+            if isinstance(request, ChangeSettings):
+                self._change.make(who, request.values, request.reason)
+            elif isinstance(request, ReloadSettings):
+                self._change.reload(who)
+            refusal = ""
+        except WeldgateError as error:
+            refusal = str(error)
+        except Exception:  # the next change has its turn
+            log.exception("settings were not changed")
+        reply(Answer(message.request_id, refusal, logged_in=True))
+
+    def close(self) -> None:
+        """End all logins and both threads."""
+        self._stop.set()
+        for thread in self._threads:
+            thread.join(timeout=10)

@@ -1,0 +1,46 @@
+"""What the PLC is told of a record; pure."""
+
+from station.domain import Origin, Purpose, Verdict
+from station.plc.map.registers import ALL_SEGMENTS, ERROR_NOT_JUDGED, Flags, VerdictCode
+from station.plc.port import Result, Trigger
+from station.records import Record
+
+
+def verdict_code(record: Record, trusted: bool) -> VerdictCode:
+    """A replayed part or a master never releases anything, nor does a station that is not to be trusted."""
+    if record.verdict is Verdict.ERROR:
+        return VerdictCode.ERROR
+    if record.purpose is not Purpose.PART or record.origin is Origin.REPLAY:
+        return VerdictCode.TEST
+    if record.verdict is Verdict.OK:
+        return VerdictCode.OK if trusted else VerdictCode.TEST
+    return VerdictCode.NOK
+
+
+def answer(
+    trigger: Trigger,
+    record: Record,
+    *,
+    novel: bool,
+    drifting: bool,
+    trusted: bool,
+) -> Result:
+    """Return the result for a trigger."""
+    inspection = record.inspection
+    reason = 0 if inspection.reason is None else inspection.reason.code
+    flags = (
+        (Flags.SIMULATED, record.origin is Origin.SIMULATED),
+        (Flags.NOVEL, novel),
+        (Flags.DRIFT, drifting),
+    )
+    return Result(
+        trigger=trigger,
+        verdict=verdict_code(record, trusted),
+        inspection_id=record.inspection_id,
+        reason=reason,
+        error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
+        seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
+        seg_nok_mask=sum(1 << i for i, bad in enumerate(inspection.nok) if bad),
+        seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
+        flags=Flags(sum(flag for flag, on in flags if on)),
+    )

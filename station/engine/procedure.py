@@ -1,0 +1,186 @@
+"""The one procedure for a part, a test image and a master: grab, judge, record, answer, show.
+
+A verdict is published only after its record is durable; whatever goes wrong on the way ends in ERROR.
+"""
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from station.archive.writer import Archive
+from station.camera.reconnecting import Grab, ReconnectingCamera
+from station.channel.events import PartEvent
+from station.channel.preview import make_preview
+from station.defects import Reason
+from station.domain import Frame, Inspection, Origin, Purpose, Timing
+from station.engine.alarm_log import AlarmLog
+from station.engine.listener import Listener
+from station.engine.plc_result import answer
+from station.engine.recording import keep, mark_shown, unkept
+from station.engine.self_checks import Watch
+from station.inspection.inspector import Inspector
+from station.inspection.loading import Loaded
+from station.plc.map.codes import ERROR_DEADLINE
+from station.plc.map.registers import VerdictCode
+from station.plc.port import Line, Trigger
+from station.records import Part, Record
+
+log = logging.getLogger("weldgate.cycle")
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """What the PLC reads of an inspection."""
+
+    verdict: VerdictCode
+    shown: bool
+    """The result was published in time."""
+    publish_ms: float
+
+
+NOT_ANSWERED = Answered(VerdictCode.NONE, shown=False, publish_ms=0.0)
+"""Outcome of an inspection that a person asked for: the PLC reads nothing of it."""
+
+
+class Procedure:
+    """Inspects what lies in the nest, for the PLC or for a person at the station."""
+
+    def __init__(
+        self,
+        *,
+        camera: ReconnectingCamera,
+        origin: Origin,
+        line: Line,
+        archive: Archive,
+        watch: Watch,
+        listener: Listener,
+        alarm_log: AlarmLog,
+        check_in: Callable[[], None],
+    ) -> None:
+        """`origin`: where frames come from; `check_in` reports the station's health to the line."""
+        self._camera, self._origin = camera, origin
+        self._line, self._check_in = line, check_in
+        self._archive, self._watch = archive, watch
+        self._listener, self._alarm_log = listener, alarm_log
+
+    def part(self, trigger: Trigger, loaded: Loaded) -> None:
+        """Inspect the part or master of a trigger and answer the PLC."""
+        self._inspect(self._grab_for(trigger), self._triggered(trigger), loaded, trigger)
+
+    def test_image(self, master: str, loaded: Loaded) -> None:
+        """Inspect what lies in the nest now, a `master` if named; the PLC reads nothing and nothing is counted."""
+        purpose = Purpose.GOLDEN if master else Purpose.TEST
+        self._inspect(self._grab(), Part(master, 0, self._origin, purpose), loaded, None)
+
+    def unanswered(self, trigger: Trigger, loaded: Loaded) -> None:
+        """Show ERROR for a trigger whose inspection failed, so that no old verdict stays on the screen."""
+        self._alarm_log.passing(ERROR_DEADLINE, f"trigger {trigger.trigger_id}, {trigger.serial}")
+        record = unkept(Inspection.error(Reason.INTERNAL), self._triggered(trigger), loaded.provenance)
+        self._listener.event(
+            PartEvent(
+                at_s=time.monotonic(),
+                record=record,
+                novel=False,
+                drift=None,
+                told=VerdictCode.ERROR,
+                record_ms=0.0,
+                publish_ms=0.0,
+            )
+        )
+
+    def _inspect(self, grab: Grab, part: Part, loaded: Loaded, trigger: Trigger | None) -> None:
+        """Judge, record, answer and show what was grabbed; without a `trigger` nothing is answered."""
+        pending = self._archive.begin(grab.frame)
+        inspection = _judge(grab, loaded.inspector)
+        start = time.perf_counter()
+        if grab.frame is not None:
+            part = replace(part, origin=grab.frame.origin)
+        record = keep(self._archive, pending, inspection, part, provenance=loaded.provenance)
+        record_ms = _ms_since(start)
+        self._watched(record, trigger)
+        novel = loaded.inspector.is_novel(record.inspection)
+        answered = NOT_ANSWERED if trigger is None else self._answer(trigger, record, novel)
+        mark_shown(self._archive, record, answered.shown)
+        event = PartEvent(
+            at_s=time.monotonic(),
+            record=record,
+            novel=novel,
+            drift=self._watch.drift,
+            told=answered.verdict,
+            record_ms=record_ms,
+            publish_ms=answered.publish_ms,
+        )
+        self._show(grab.frame, event)
+
+    def _triggered(self, trigger: Trigger) -> Part:
+        purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
+        return Part(trigger.serial, trigger.trigger_id, self._origin, purpose)
+
+    def _grab_for(self, trigger: Trigger) -> Grab:
+        """Grab the part of this trigger; no frame if the trigger is over and another part may lie there."""
+        if not self._line.in_work(trigger):
+            return Grab(None, Reason.ABORTED, None)
+        grab = self._grab()
+        self._line.exposure_done(trigger)
+        return grab
+
+    def _grab(self) -> Grab:
+        """Grab with the exposure of the settings, never with one that somebody tries by hand."""
+        self._camera.adjust(None, None)
+        return self._camera.grab()
+
+    def _watched(self, record: Record, trigger: Trigger | None) -> None:
+        """Let the station watch itself by this record; test images do not count for the drift."""
+        if trigger is not None:
+            self._watch.part(record.inspection)
+        if record.purpose is Purpose.GOLDEN:
+            self._watch.master(record.serial, record.verdict)
+
+    def _answer(self, trigger: Trigger, record: Record, novel: bool) -> Answered:
+        """Publish the result of a trigger; alarms and the log say what was wrong with it."""
+        self._check_in()
+        start = time.perf_counter()
+        drifting, trusted = self._watch.drifting, self._watch.trusted
+        result = answer(trigger, record, novel=novel, drifting=drifting, trusted=trusted)
+        shown = self._line.publish(result)
+        publish_ms = _ms_since(start)
+        if result.error_code or not shown:
+            code = result.error_code if shown else self._line.state().error_code or ERROR_DEADLINE
+            self._alarm_log.passing(code, f"part {record.inspection_id}")
+        if not shown:
+            log.warning(
+                "part %d, %s: came too late, the PLC was not shown its verdict %s",
+                record.inspection_id,
+                record.serial,
+                record.verdict,
+            )
+        if novel:
+            log.warning(
+                "part %d, %s: unlike the training images (distance %.2f); check light, focus and surface",
+                record.inspection_id,
+                record.serial,
+                record.inspection.novelty,
+            )
+        return Answered(result.verdict if shown else VerdictCode.ERROR, shown, publish_ms)
+
+    def _show(self, frame: Frame | None, event: PartEvent) -> None:
+        self._listener.event(event)
+        if frame is not None:
+            inspection_id, ring = event.record.inspection_id, event.record.inspection.ring
+            self._listener.preview(make_preview(inspection_id, frame.image, ring))
+
+
+def _judge(grab: Grab, inspector: Inspector) -> Inspection:
+    timing = Timing(grab_ms=grab.grab_ms)
+    if grab.frame is None:
+        return Inspection.error(grab.reason or Reason.INTERNAL, timing=timing)
+    try:
+        return inspector.inspect(grab.frame.image, grab.grab_ms)
+    except Exception:  # the gate must answer: any fault is "not judged"
+        log.exception("inspection failed")
+        return Inspection.error(Reason.INTERNAL, timing=timing)
+
+
+def _ms_since(start: float) -> float:
+    return (time.perf_counter() - start) * 1000

@@ -1,0 +1,1 @@
+"""Frame to verdict: one inspector for line, replay and self-test."""

@@ -1,0 +1,61 @@
+"""A recipe made ready: networks loaded and warm, limits set, tested on a stored frame."""
+
+import hashlib
+import zlib
+from dataclasses import dataclass, replace
+
+from station import __version__
+from station.classify.onnx import Classifier, RingNetwork
+from station.classify.thresholds import Thresholds
+from station.inspection.inspector import Inspector
+from station.inspection.self_test import SelfTest
+from station.records import Provenance
+from station.settings.model import Settings, for_recipe
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A recipe, ready to judge."""
+
+    number: int
+    inspector: Inspector
+    provenance: Provenance
+    self_test: SelfTest | None
+
+
+def prepare(settings: Settings, number: int) -> Loaded:
+    """Load a recipe, warm it up, test it on its stored frame. Raises WeldgateError."""
+    chosen = for_recipe(settings, number)
+    inspector, provenance = load_inspector(chosen)
+    provenance = replace(provenance, recipe=number)
+    path = chosen.model.self_test_path
+    return Loaded(number, inspector, provenance, None if path is None else SelfTest(inspector, path, str(chosen.model.self_test_verdict)))
+
+
+def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
+    """Inspector and what its verdicts come from. Raises ModelError."""
+    ring_network = RingNetwork(settings.model.ring_path, settings.model.threads)
+    classifier = Classifier(settings.model.path, settings.model.threads)
+    inspector = Inspector(ring_network, classifier, settings.weld, settings.quality, settings.model)
+    parts = (
+        settings.model_dump_json(include={"camera", "weld", "quality"}),
+        ring_network.file_hash,
+        classifier.card.file_hash,
+        *_words_of(inspector.thresholds),
+    )
+    provenance = Provenance(
+        software=__version__,
+        model_version=classifier.card.version,
+        model_hash=classifier.card.file_hash,
+        ring_model_hash=ring_network.file_hash,
+        config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
+        thresholds=inspector.thresholds,
+        limits_hash=hashlib.sha256(settings.model_dump_json(include={"weld", "quality"}).encode()).hexdigest(),
+    )
+    return inspector, provenance
+
+
+def _words_of(thresholds: Thresholds) -> list[str]:
+    """Write out all limits: whatever changes them changes CONFIG_CRC."""
+    words = [f"{limit.kind.name} {limit.threshold!r} {limit.min_mm!r}" for limit in thresholds.kinds]
+    return words + [f"{number} {own!r}" for number, own in thresholds.segments]

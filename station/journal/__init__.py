@@ -1,0 +1,1 @@
+"""What people and the station did besides inspecting parts: journal, users, reviews."""

@@ -1,0 +1,42 @@
+"""Writes the journal: for the engine alone; windows read it and ask the engine."""
+
+import sqlite3
+from contextlib import closing
+from datetime import UTC, datetime
+from pathlib import Path
+
+from station.errors import RecordError
+from station.files.sqlite import CHAIN_START, PATIENCE_S, use_wal
+from station.journal.journal import COLUMNS, NAME, Entry, Kind, link_entry
+
+SCHEMA = (
+    """CREATE TABLE IF NOT EXISTS entries (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    at TEXT NOT NULL, kind TEXT NOT NULL, who TEXT NOT NULL, subject TEXT NOT NULL,
+    before TEXT NOT NULL, after TEXT NOT NULL, reason TEXT NOT NULL, chain TEXT NOT NULL
+)""",
+    "CREATE INDEX IF NOT EXISTS entries_kind ON entries (kind, subject, number)",
+    "CREATE TRIGGER IF NOT EXISTS entries_stay BEFORE DELETE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
+    "CREATE TRIGGER IF NOT EXISTS entries_same BEFORE UPDATE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
+)
+"""Statements that make the journal."""
+
+
+def append(folder: Path, kind: Kind, who: str, subject: str = "", before: str = "", after: str = "", reason: str = "") -> Entry:
+    """Write an entry durably. Raises RecordError; then what it tells of must not be done."""
+    entry = Entry(datetime.now(UTC).isoformat(timespec="milliseconds"), kind, who, subject, before, after, reason)
+    try:
+        with closing(sqlite3.connect(folder / NAME, timeout=PATIENCE_S, isolation_level=None)) as connection:
+            use_wal(connection)
+            connection.execute("BEGIN IMMEDIATE")
+            for statement in SCHEMA:
+                connection.execute(statement)
+            last = connection.execute("SELECT chain FROM entries ORDER BY number DESC LIMIT 1").fetchone()
+            values = [str(getattr(entry, name)) for name in COLUMNS]
+            chain = link_entry(CHAIN_START if last is None else last[0], values)
+            marks = ", ".join("?" * (len(COLUMNS) + 1))
+            connection.execute(f"INSERT INTO entries ({', '.join(COLUMNS)}, chain) VALUES ({marks})", [*values, chain])
+            connection.execute("COMMIT")
+    except sqlite3.Error as error:
+        raise RecordError(f"{folder / NAME}: cannot be written ({error}); nothing was changed") from None
+    return entry

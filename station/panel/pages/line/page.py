@@ -1,0 +1,209 @@
+"""The PLC side: live bits and registers with their names, edges with milliseconds, the word order, bits set by hand."""
+
+import struct
+from collections import deque
+from datetime import datetime
+from enum import IntFlag
+
+from PySide6.QtCore import QSignalBlocker, Qt, QTimer
+from PySide6.QtGui import QShowEvent
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout
+
+from station.channel.requests import HoldService
+from station.errors import RecordError
+from station.journal.users import Level
+from station.panel.look import theme
+from station.panel.look.words import data, translate
+from station.panel.pages.page import Page
+from station.panel.session.session import Session
+from station.panel.widgets.card import Choice, Table, label, titled
+from station.plc.bus_log import Edge, tail_bus
+from station.plc.map.registers import (
+    BY_NAME,
+    COMMAND_START,
+    MAP,
+    STATUS_START,
+    Control,
+    Offline,
+    Status,
+    Value,
+    VerdictCode,
+    unpack_window,
+)
+
+EDGES = 400
+REFRESH_MS = 500
+
+
+class LinePage(Page):
+    """Follows the status events and the bus recorder's file."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self._edges: deque[Edge] = deque(maxlen=EDGES)
+        self._place: tuple[str, int] = ("", 0)
+        self._lamps: dict[tuple[str, IntFlag], QLabel] = {}
+        """By register: bits of CONTROL and STATUS are equal numbers."""
+        self.registers = Table((translate("line", "register"), translate("line", "name"), translate("line", "value")), stretch=2)
+        self.edges = Table(
+            (
+                translate("line", "time"),
+                translate("line", "by"),
+                translate("line", "what"),
+                translate("line", "value"),
+                translate("line", "note"),
+            ),
+            stretch=4,
+        )
+        self._words = label("", "quiet", wrap=True)
+        self._stale = label(translate("line", "no word from the engine: the registers are as they last were"), "problem")
+        self._stale.hide()
+        self._problem = label("", "problem")
+        self.service = QPushButton(translate("line", "Service mode"))
+        self.service.setCheckable(True)
+        self.service.clicked.connect(self._toggle_service)
+        self.bits = Choice()
+        self.bits.addItem(translate("line", "no bit"), 0)
+        for flag in Status:
+            self.bits.addItem(str(flag.name), int(flag))
+        self.bits.currentIndexChanged.connect(self._set_bit)
+        self._lay_out()
+        session.received.status_changed.connect(self._on_status)
+        session.service.changed.connect(self._on_service)
+        session.service.refused.connect(self._on_refused)
+        session.account.changed.connect(self._on_service)
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._read_edges)
+        self._timer.timeout.connect(self._on_status)
+        self._timer.start(REFRESH_MS)
+        self._on_status()
+        self._on_service()
+        self._read_edges()
+
+    def _lay_out(self) -> None:
+        bits = QFrame()
+        bits.setObjectName("card")
+        grid = QGridLayout(bits)
+        grid.setSpacing(4)
+        here = translate("line", "station")
+        both: tuple[tuple[str, str, type[IntFlag]], ...] = (("CONTROL", f"PLC → {here}", Control), ("STATUS", f"{here} → PLC", Status))
+        for row, (register, title, flags) in enumerate(both):
+            grid.addWidget(label(title, "quiet"), row * 3, 0, 1, 8)
+            for index, flag in enumerate(flags):
+                lamp = QLabel(str(flag.name))
+                lamp.setAlignment(Qt.AlignmentFlag.AlignCenter)
+                lamp.setMinimumHeight(30)
+                self._lamps[register, flag] = lamp
+                grid.addWidget(lamp, row * 3 + 1 + index // 8, index % 8)
+        hand = QHBoxLayout()
+        for widget in (self.service, label(translate("line", "set one bit of STATUS by hand:"), "quiet"), self.bits, self._problem):
+            hand.addWidget(widget)
+        hand.addStretch(1)
+        below = QSplitter(Qt.Orientation.Horizontal)
+        below.addWidget(titled(translate("line", "Registers as the PLC has them"), self.registers))
+        below.addWidget(titled(translate("line", "Edges on the bus, the newest first"), self.edges))
+        below.setSizes([420, 660])
+        column = QVBoxLayout(self)
+        column.addWidget(bits)
+        column.addLayout(hand)
+        column.addWidget(self._stale)
+        column.addWidget(self._words)
+        column.addWidget(below, 1)
+
+    def _on_status(self) -> None:
+        status, there = self._session.received.status, self._session.received.engine_there
+        if status is None or not status.status_words or not (self.isVisible() or self.registers.rowCount() == 0):
+            return
+        self._stale.setVisible(not there)
+        self.registers.setEnabled(there)
+        values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(STATUS_START, list(status.status_words))
+        held = {"CONTROL": status.line.control, "STATUS": status.line.status}
+        c = theme.colors()
+        for (register, flag), lamp in self._lamps.items():
+            on = there and bool(flag & held[register])
+            said = f"● {flag.name}" if on else f"○ {flag.name}" if there else f"? {flag.name}"
+            if lamp.text() != said:
+                lamp.setText(said)
+                on_style = f"background: {c.accent}; color: {c.background}; font-weight: 700;"
+                lamp.setStyleSheet("border-radius: 4px; font-size: 12px; " + (on_style if on else f"background: {c.raised};"))
+        self.registers.fill([(str(r.address), r.name, _shown(r.name, values[r.name])) for r in MAP])
+        words = status.status_words
+        for_u32, for_f32 = (words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32"))
+        test_f32 = struct.unpack(">f", struct.pack(">HH", *for_f32))[0]
+        if self._session.received.settings.plc.low_word_first:
+            for_u32, for_f32 = for_u32[::-1], for_f32[::-1]
+        self._words.setText(
+            translate("line", "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:")
+            + f" {for_u32[0]:04X} {for_u32[1]:04X} · {for_f32[0]:04X} {for_f32[1]:04X} ({test_f32:.3f}). "
+            + translate("line", "If the PLC reads 16#56781234, exchange its words or set plc.low_word_first.")
+        )
+
+    def _on_service(self) -> None:
+        session = self._session
+        self.service.setChecked(session.service.held is not None)
+        self.service.setEnabled(session.account.may(Level.SETTER))
+        self.bits.setEnabled(session.service.held is not None and session.account.may(Level.SETTER))
+        hint = "" if session.account.may(Level.SETTER) else translate("line", "log in as setter first (page Setup)")
+        self._problem.setText(hint)
+        with QSignalBlocker(self.bits):
+            self.bits.setCurrentIndex(max(0, self.bits.findData(0 if session.service.held is None else session.service.held.bit)))
+
+    def _toggle_service(self) -> None:
+        session = self._session
+        if session.service.held is not None:
+            session.service.end()
+        elif session.account.user is not None:
+            self._hold(HoldService())
+
+    def _set_bit(self) -> None:
+        if self._session.service.held is not None:
+            self._hold(HoldService(bit=int(self.bits.currentData())))
+
+    def _hold(self, request: HoldService) -> None:
+        for widget in (self.service, self.bits):
+            widget.setEnabled(False)  # until the engine has answered
+        self._session.service.hold(request)
+
+    def _on_refused(self, why: str) -> None:
+        self._on_service()
+        self._problem.setText(data(why))
+
+    def _read_edges(self) -> None:
+        if not (self.isVisible() or not self._edges):
+            return
+        try:
+            new, self._place = tail_bus(self._session.received.folder, self._place, EDGES)
+        except RecordError as error:
+            self._problem.setText(str(error))
+            return
+        if not new:
+            return
+        self._edges.extend(new)
+        rows = [(_time(e.time), data(e.by), e.name, str(e.value), data(e.note) if e.note else "") for e in reversed(self._edges)]
+        self.edges.fill(rows)
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        """What came while nobody looked."""
+        super().showEvent(event)
+        self._on_status()
+
+    def close_page(self) -> None:
+        """Stop following."""
+        self._timer.stop()
+
+
+def _time(utc: str) -> str:
+    return f"{datetime.fromisoformat(utc).astimezone():%H:%M:%S.%f}"[:-3]
+
+
+def _shown(name: str, value: Value) -> str:
+    if name == "VERDICT":
+        return f"{value} {VerdictCode(int(str(value))).name}"
+    if name == "OFFLINE_REASON":
+        return f"{value} {Offline(int(str(value))).name}"
+    if name in ("STATUS", "CONTROL", "ERROR_CODE", "CONFIG_CRC", "FLAGS", "VERDICT_INV"):
+        return f"16#{int(str(value)):04X}"
+    if isinstance(value, float):
+        return f"{value:.3f}"
+    return " ".join(map(str, value)) if isinstance(value, tuple) else str(value)

@@ -1,0 +1,262 @@
+"""Recorded images judged again, of this archive or of a folder: what is said now, beside what the line said."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
+
+from station.files.image import read_image
+from station.inspection.inspector import Inspector
+from station.inspection.loading import load_inspector
+from station.journal.users import Level
+from station.panel.look.words import data, translate
+from station.panel.pages.page import Page
+from station.panel.session.session import Session
+from station.panel.widgets.card import Choice, Table, label, titled
+from station.panel.widgets.dialogs import ask_folder
+from station.panel.widgets.field import NumberField
+from station.panel.widgets.weld.kept import judged
+from station.panel.widgets.weld.weld_view import Drawn, WeldView
+from station.panel.widgets.work import Told, WorkBar
+from station.records import Provenance
+from station.replay.compare import Comparison, compare
+from station.replay.files import Source, sources
+from station.replay.judge import at_scale
+from station.replay.report import write_page
+from station.replay.results import write_json
+from station.replay.run import replay
+from station.settings.model import Settings, for_recipe
+
+NEWEST = (20, 100, 500)
+"""Frames of this archive."""
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """All that a replay brought."""
+
+    sources: tuple[Source, ...]
+    entries: dict[str, dict[str, Any]]
+    judge: tuple[Inspector, Provenance]
+    factor: float
+    comparison: Comparison | None
+    problems: tuple[str, ...]
+
+
+class ReplayPage(Page):
+    """Runs beside the window on one thread, on the time that the engine leaves; the PLC hears nothing of it."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self.done: Done | None = None
+        self._lay_out()
+        self.judge.clicked.connect(self.start)
+        self.choose.clicked.connect(self._ask_folder)
+        self.report.clicked.connect(self._ask_report)
+        self.only_flips.toggled.connect(self._fill)
+        self.table.itemSelectionChanged.connect(self._on_chosen)
+        self._work.done.connect(self._on_done)
+        self._looking.done.connect(self._on_picture)
+        for work in (self._work, self._looking):
+            work.failed.connect(lambda why: self._problem.setText(data(why)))
+        session.account.changed.connect(self._on_user)
+        self._on_user()
+
+    def _lay_out(self) -> None:
+        self.what, self.folder, self.recipe = Choice(), QLineEdit(), Choice()
+        newest = translate("replay", "the newest of this station:")
+        for count in NEWEST:
+            self.what.addItem(f"{newest} {count}", count)
+        self.what.addItem(translate("replay", "a folder or another archive:"), None)
+        self.choose = QPushButton(translate("replay", "Choose…"))
+        self.folder.setPlaceholderText(translate("replay", "folder with images"))
+        word = translate("replay", "recipe")
+        for number in sorted({1, *self._session.received.settings.recipes}):
+            self.recipe.addItem(f"{word} {number}", number)
+        self.scale = NumberField(1.0, 200.0, "µm/px")
+        self.scale.set(self._session.received.settings.weld.um_per_px)
+        self.judge, self.report = QPushButton(translate("replay", "Judge")), QPushButton(translate("replay", "Report…"))
+        self.only_flips = QPushButton(translate("replay", "Other verdicts only"))
+        self.only_flips.setCheckable(True)
+        top, second = QHBoxLayout(), QHBoxLayout()
+        for widget, stretch in ((self.what, 0), (self.folder, 1), (self.choose, 0)):
+            top.addWidget(widget, stretch)
+        for part in (self.recipe, label(translate("replay", "scale of the images"), "quiet"), self.scale):
+            second.addWidget(part)
+        second.addStretch(1)
+        for button in (self.judge, self.only_flips, self.report):
+            second.addWidget(button)
+        self.said, self._problem, self._work = label("", "title", wrap=True), label("", "problem", wrap=True), WorkBar()
+        heads = (
+            translate("replay", "image"),
+            translate("replay", "on the line"),
+            translate("replay", "now"),
+            translate("replay", "score"),
+            translate("replay", "reason"),
+        )
+        self.table, self.weld, self._looking = Table(heads, stretch=0), WeldView(), WorkBar()
+        policy = self._looking.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)  # the picture does not jump
+        self._looking.setSizePolicy(policy)
+        right = QWidget()
+        column = QVBoxLayout(right)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.weld, 1)
+        column.addWidget(self._looking)
+        split = QSplitter()
+        split.addWidget(titled(translate("replay", "images"), self.table))
+        split.addWidget(right)
+        split.setSizes([640, 440])
+        rows = QVBoxLayout(self)
+        for line in (top, second):
+            rows.addLayout(line)
+        for place in (self.said, self._work, self._problem):
+            rows.addWidget(place)
+        rows.addWidget(split, 1)
+
+    def _on_user(self) -> None:
+        hint = "" if self._session.account.may(Level.OPERATOR) else translate("replay", "log in first (page Setup)")
+        for button in (self.judge, self.choose, self.report):
+            button.setEnabled(not hint)
+            button.setToolTip(hint)
+        self.report.setEnabled(not hint and self.done is not None)
+
+    def _ask_folder(self) -> None:
+        folder = ask_folder(self, self._session, translate("replay", "folder with images"))
+        if folder is not None:
+            self.folder.setText(str(folder))
+            self.what.setCurrentIndex(self.what.count() - 1)
+
+    def start(self) -> None:
+        """Judge what the fields say."""
+        scale, count, text = self.scale.value, self.what.currentData(), self.folder.text().strip()
+        if scale is None:
+            self._problem.setText(translate("replay", "the scale is not allowed"))
+            return
+        if count is None and not text:
+            self._problem.setText(translate("replay", "choose a folder first"))
+            return
+        settings, number = self._session.received.settings, int(self.recipe.currentData())
+        path = self._session.received.folder if count is not None else Path(text)
+
+        def work(told: Told) -> Done | None:
+            return _judged(for_recipe(settings, number), path, count, scale, told)
+
+        self._problem.setText("")
+        if self._work.start(translate("replay", "images are judged"), work):
+            self.done = None
+            self.said.setText("")
+            self.weld.show_weld(None)
+            self._fill()
+            self._on_user()
+
+    def _on_done(self, found: object) -> None:
+        if isinstance(found, Done):
+            self.done = found
+            self._tell(found)
+            self._fill()
+            self._on_user()
+        elif found is not None:
+            self._problem.setText("")
+            self.said.setText(str(found))
+
+    def _on_picture(self, seen: tuple[str, Drawn]) -> None:
+        name, drawn = seen
+        if name == self.table.chosen():
+            self.weld.show_weld(drawn, caption=name)
+        else:  # another one was chosen meanwhile
+            self._on_chosen()
+
+    def _tell(self, found: Done) -> None:
+        verdicts = [entry["verdict"] for entry in found.entries.values()]
+        counts = {verdict: verdicts.count(verdict) for verdict in ("OK", "NOK", "ERROR")}
+        text = translate("replay", "{n} images: {ok} OK, {nok} NOK, {error} not judged").format(
+            n=len(verdicts), ok=counts["OK"], nok=counts["NOK"], error=counts["ERROR"]
+        )
+        c = found.comparison
+        if c is not None:
+            text += "; " + translate("replay", "{n} compared with the line, {flips} verdicts differ").format(
+                n=c.compared, flips=len(c.flips)
+            )
+        self.said.setText(text)
+        problems = list(found.problems)
+        if c is not None:
+            unlike = translate("replay", "the same networks and limits judge it otherwise than on the line")
+            problems += [*c.problems, *(f"{name}: {unlike}" for name in c.not_alike)]
+        more = translate("replay", "and {n} more").format(n=len(problems) - 3)
+        self._problem.setText("\n".join([*problems[:3], *([more] if len(problems) > 3 else [])]))
+
+    def _fill(self) -> None:
+        if self.done is None:
+            self.table.fill(())
+            return
+        before = {f.name: f.before for f in self.done.comparison.flips} if self.done.comparison is not None else {}
+        rows, names = [], []
+        for source in self.done.sources:
+            entry, flipped = self.done.entries[source.name], before.get(source.name)
+            if self.only_flips.isChecked() and flipped is None:
+                continue
+            line = "–" if source.row is None else source.row.verdict
+            worst = max((s for s in entry["segments"] if s is not None), default=None)
+            mark = "≠ " if flipped is not None else ""
+            reason = "" if entry["reason"] is None else data(entry["reason"])
+            rows.append((source.name, line, mark + entry["verdict"], "–" if worst is None else f"{worst:.3f}", reason))
+            names.append(source.name)
+        self.table.fill(rows, names)
+
+    def _on_chosen(self) -> None:
+        """The picture with what is found in it now."""
+        found, name = self.done, self.table.chosen()
+        if found is None or name is None or self._looking.busy:
+            return
+        path = next(source.path for source in found.sources if source.name == name)
+
+        def work(_told: Told) -> tuple[str, Drawn]:
+            image, inspector = at_scale(read_image(path), found.factor), found.judge[0]
+            inspection = inspector.inspect(image)
+            return str(name), judged(image, inspection)[0]
+
+        self._looking.start("", work)
+
+    def _ask_report(self) -> None:
+        folder = ask_folder(self, self._session, translate("replay", "folder for the report"))
+        if folder is not None:
+            self.write_report(folder / "weldgate-replay")
+
+    def write_report(self, folder: Path) -> None:
+        """report.html with pictures, and replay.json."""
+        found = self.done
+        if found is None:
+            return
+
+        def work(_told: Told) -> str:
+            page = write_page(folder, found.sources, found.entries, found.judge[1], found.comparison, None, found.problems)
+            write_json(folder / "replay.json", found.entries)
+            return str(page)
+
+        self._work.start(translate("replay", "report"), work)
+
+    def close_page(self) -> None:
+        """Nothing is left running."""
+        for work in (self._work, self._looking):
+            work.close_work()
+
+
+def _judged(settings: Settings, path: Path, count: int | None, scale_um_per_px: float, told: Told) -> Done | None:
+    """None if it was cancelled. Raises WeldgateError."""
+    found = sources([path])
+    if count is not None:
+        found = found[-count:]
+    one = settings.model_copy(update={"model": settings.model.model_copy(update={"threads": 1, "reference_path": None})})
+    judge, factor = load_inspector(one), scale_um_per_px / settings.weld.um_per_px
+    entries: dict[str, dict[str, Any]] = {}
+    problems: list[str] = []
+    for outcome in replay(found, one, judge, factor, 1, None):
+        entries[outcome.name] = outcome.entry
+        problems += [*([outcome.problem] if outcome.problem else []), *outcome.warnings]
+        if not told(len(entries), len(found)):
+            return None
+    comparison = compare(found, entries, judge[1]) if any(source.row is not None for source in found) else None
+    return Done(tuple(found), entries, judge, factor, comparison, tuple(problems))

@@ -1,0 +1,112 @@
+"""Who is there: name and PIN, with keys for gloves; the first user of a station becomes its administrator."""
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QShowEvent
+from PySide6.QtWidgets import QFormLayout, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+
+from station.channel.requests import Answer
+from station.errors import RecordError
+from station.journal.users import users
+from station.panel.look.words import data, translate
+from station.panel.pages.page import Page
+from station.panel.pages.setup.login_view import Said, login_view, said
+from station.panel.session.session import Session
+from station.panel.widgets.card import Choice, label, titled
+
+
+class LoginPage(Page):
+    """Log in and out."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self.name, self.pin = Choice(), QLineEdit()
+        self.name.setEditable(True)
+        self.name.setMinimumWidth(260)
+        self.pin.setEchoMode(QLineEdit.EchoMode.Password)
+        self.pin.setMaxLength(12)
+        self.log_in, self.log_out = QPushButton(translate("login", "Log in")), QPushButton(translate("login", "Log out"))
+        self.log_in.clicked.connect(self._log_in)
+        self.pin.returnPressed.connect(self._log_in)
+        self.log_out.clicked.connect(session.account.log_out)
+        self._who, self.problem = label("", "title"), label("", "problem", wrap=True)
+        form_box = QWidget()
+        form = QFormLayout(form_box)
+        form.addRow(translate("login", "name"), self.name)
+        form.addRow(translate("login", "PIN"), self.pin)
+        keys = QGridLayout()
+        for index, key in enumerate("123456789⌫0↵"):
+            button = QPushButton(key)
+            button.setMinimumSize(72, 56)
+            button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+            button.clicked.connect(lambda _=False, k=key: self._key(k))
+            keys.addWidget(button, index // 3, index % 3)
+        form.addRow(keys)
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.log_in)
+        buttons.addWidget(self.log_out)
+        form.addRow(buttons)
+        self._hint = label("", "quiet", wrap=True)
+        column = QVBoxLayout()
+        column.addWidget(self._who)
+        column.addWidget(titled(translate("login", "Log in"), form_box))
+        column.addWidget(self.problem)
+        column.addWidget(self._hint)
+        column.addStretch(1)
+        row = QHBoxLayout(self)
+        row.addStretch(1)
+        row.addLayout(column)
+        row.addStretch(1)
+        session.account.changed.connect(self._on_user)
+        self._on_user()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        """Users may have come meanwhile."""
+        self._on_user()
+        super().showEvent(event)
+
+    def _key(self, key: str) -> None:
+        if key == "⌫":
+            self.pin.backspace()
+        elif key == "↵":
+            self._log_in()
+        else:
+            self.pin.insert(key)
+
+    def _on_user(self) -> None:
+        user = self._session.account.user
+        self.pin.clear()
+        self.log_out.setEnabled(user is not None)
+        self.problem.setText("")
+        self._who.setText(translate("login", "nobody is logged in") if user is None else f"{user.name} · {data(user.level.name.lower())}")
+        try:
+            known = users(self._session.received.folder)
+        except RecordError as error:
+            self.problem.setText(str(error))
+            return
+        view = login_view(known, self.name.currentText())
+        self.log_in.setText(translate("login", "Become administrator") if view.first else translate("login", "Log in"))
+        self._hint.setText(
+            translate("login", "Nobody is known yet: whoever gives a name and a PIN of at least 4 digits becomes administrator.")
+            if view.first
+            else translate("login", "Watching needs no login, doing does. Five wrong PINs lock a name for a minute.")
+        )
+        self.name.clear()
+        self.name.addItems(view.names)
+        self.name.setEditText(view.chosen)
+
+    def _log_in(self) -> None:
+        name, pin = self.name.currentText().strip(), self.pin.text()
+        self.pin.clear()
+        self.log_in.setEnabled(False)
+        self._session.account.log_in(name, pin, self._on_answer, self)
+
+    def _on_answer(self, answer: Answer) -> None:
+        self.log_in.setEnabled(True)
+        if said(answer) is Said.LOCKED:
+            self.problem.setText(translate("login", "locked for a minute after five wrong PINs"))
+        elif said(answer) is Said.REFUSED:
+            self.problem.setText(data(answer.refusal))
+
+    def close_page(self) -> None:
+        """Nothing runs."""

@@ -1,0 +1,240 @@
+"""Limits of a recipe: what they would have done to the parts of the archive is shown before they can be saved, with a reason."""
+
+from PySide6.QtGui import QShowEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
+
+from station.analysis.what_if import WhatIf, what_if
+from station.channel.requests import Changed
+from station.classify.onnx import Classifier
+from station.defects import KINDS
+from station.errors import ModelError, SettingsError
+from station.journal.users import Level
+from station.panel.look.words import data, translate
+from station.panel.pages.page import Page
+from station.panel.pages.setup.limit_fields import FIELDS, MIN_MM, THRESHOLD, limits_in_use, place_of, quality_of, thresholds_of
+from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState, scored_records
+from station.panel.session.session import Session
+from station.panel.widgets.card import Choice, Table, label, titled
+from station.panel.widgets.field import NumberField, SegmentLimits
+from station.panel.widgets.work import Told, WorkBar
+from station.settings.model import for_recipe
+
+
+class RecipePage(Page):
+    """Thresholds and limits of picture quality."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self._state = WhatIfState()
+        self._saving = False
+        """Whether the engine has not yet answered to what was saved here."""
+        self.recipe = Choice()
+        word = translate("recipe", "recipe")
+        for number in sorted({1, *session.received.settings.recipes}):
+            self.recipe.addItem(f"{word} {number}", number)
+        threshold, length = translate("recipe", "{kind}: threshold"), translate("recipe", "{kind}: minimum length (mm)")
+        names = {
+            **{THRESHOLD.format(kind.name): threshold.format(kind=data(kind.reason)) for kind in KINDS},
+            **{MIN_MM.format(kind.name): length.format(kind=data(kind.reason)) for kind in KINDS},
+            "min_mean_dn": translate("recipe", "least brightness"),
+            "max_dark_share": translate("recipe", "greatest dark share"),
+            "max_saturated_share": translate("recipe", "greatest saturated share"),
+            "min_sharpness": translate("recipe", "least sharpness"),
+        }
+        self.fields = {key: NumberField(low, high) for key, (_, low, high) in FIELDS.items()}
+        self._names: dict[str, QLabel] = {}
+        self.segments = SegmentLimits()
+        self.segments.changed.connect(self._look)
+        heads = (
+            translate("recipe", "part"),
+            translate("recipe", "serial"),
+            translate("recipe", "was"),
+            translate("recipe", "would be"),
+            translate("recipe", "segment"),
+            translate("recipe", "score"),
+        )
+        self.released, self.refused = Table(heads, stretch=1), Table(heads, stretch=1)
+        self.ask, self.save = QPushButton(translate("recipe", "What if?")), QPushButton(translate("recipe", "Save"))
+        self.reason = QLineEdit()
+        self.reason.setPlaceholderText(translate("recipe", "reason (needed)"))
+        self.said, self.problem, self._work = label("", "title"), label("", "problem", wrap=True), WorkBar()
+        box = QWidget()
+        form = QGridLayout(box)
+        form.setVerticalSpacing(2)
+        form.addWidget(self.recipe, 0, 0, 1, 2)
+        for place, (key, name) in enumerate(names.items(), 1):
+            self._names[key] = label(name)
+            form.addWidget(self._names[key], place, 0)
+            form.addWidget(self.fields[key], place, 1)
+            self.fields[key].changed.connect(self._look)
+        form.addWidget(label(translate("recipe", "limits of single segments")), len(names) + 1, 0)
+        form.addWidget(self.segments, len(names) + 1, 1)
+        right = QVBoxLayout()
+        right.addWidget(self.said)
+        right.addWidget(titled(translate("recipe", "would be released (NOK → OK): possible escapes"), self.released), 1)
+        right.addWidget(titled(translate("recipe", "would be refused (OK → NOK): possible false calls"), self.refused), 1)
+        below = QHBoxLayout()
+        for widget, stretch in ((self.ask, 0), (self.reason, 1), (self.save, 0)):
+            below.addWidget(widget, stretch)
+        right.addLayout(below)
+        right.addWidget(self._work)
+        right.addWidget(self.problem)
+        left = QVBoxLayout()
+        left.addWidget(titled(translate("recipe", "limits"), box))
+        left.addStretch(1)
+        row = QHBoxLayout(self)
+        row.addLayout(left, 2)
+        row.addLayout(right, 3)
+        self.ask.clicked.connect(self._ask)
+        self.save.clicked.connect(self._save)
+        self.reason.textChanged.connect(self._look)
+        self.recipe.currentIndexChanged.connect(self._fill)
+        self._work.done.connect(self._on_done)
+        self._work.failed.connect(self.problem.setText)
+        session.account.changed.connect(self._on_user)
+        session.received.settings_changed.connect(self._on_settings)
+        session.change.used.connect(self._on_used)
+        session.change.refused.connect(self._on_refused)
+        session.change.asked.connect(self._look)
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        """The limits of a model are in its file: loaded once they are looked at."""
+        if self._state.in_use is None:
+            self._fill()
+        super().showEvent(event)
+
+    def _on_settings(self) -> None:
+        if self._state.in_use is not None:
+            self._fill()
+
+    def _fill(self) -> None:
+        """The limits in use."""
+        number = int(self.recipe.currentData())
+        settings = for_recipe(self._session.received.settings, number)
+        try:
+            self._state.in_use = Values(number, limits_in_use(settings), dict(settings.model.segment_thresholds))
+        except (ModelError, SettingsError) as error:
+            self.problem.setText(str(error))
+            return
+        self.segments.set(self._state.in_use.segments)
+        for key, field in self.fields.items():
+            known = key in self._state.in_use.limits
+            if known:
+                field.set(self._state.in_use.limits[key])
+            for widget in (field, self._names[key]):
+                widget.setVisible(known)
+        self._look()
+
+    def values(self) -> Values | None:
+        """What stands in the fields; None if something is not allowed."""
+        used = self._state.in_use
+        keys = FIELDS if used is None else used.limits
+        numbers = {key: value for key in keys if (value := self.fields[key].value) is not None}
+        segments = self.segments.value
+        return None if len(numbers) < len(keys) or segments is None else Values(int(self.recipe.currentData()), numbers, segments)
+
+    def _on_user(self) -> None:
+        """What one has typed and seen is not for the next."""
+        self._work.cancel()
+        self._saving = False
+        self.reason.clear()
+        self._forget()
+        self._look()
+
+    def _forget(self) -> None:
+        """What other values would have done."""
+        self._state.asked = None
+        self.said.setText("")
+        for table in (self.released, self.refused):
+            table.fill(())
+
+    def _look(self) -> None:
+        values = self.values()
+        if self._state.asked is not None and values != self._state.asked:
+            self._forget()
+        changed = self._state.changed(values)
+        self.ask.setEnabled(changed and not self._work.busy)
+        session = self._session
+        missing = self._state.missing(values, self.reason.text(), session.account.may(Level.QUALITY), session.change.waiting)
+        self.save.setEnabled(missing is Missing.NOTHING)
+        hints = {
+            Missing.LOGIN: translate("recipe", "log in as quality to save"),
+            Missing.QUESTION: translate("recipe", "ask what if before saving"),
+            Missing.REASON: translate("recipe", "a reason is needed"),
+            Missing.ANSWER: translate("recipe", "waiting for the engine"),
+        }
+        self.save.setToolTip(hints.get(missing, ""))
+
+    def _ask(self) -> None:
+        values, folder = self.values(), self._session.received.folder
+        if values is None:
+            return
+        settings = for_recipe(self._session.received.settings, values.recipe)
+        thresholds, quality = thresholds_of(values), quality_of(values, settings)
+
+        def work(told: Told) -> tuple[Values, WhatIf, int] | None:
+            judge = Classifier(settings.model.path, 1).card.file_hash
+            found = scored_records(folder, values.recipe, judge, told)
+            return None if found is None else (values, what_if(found[0], thresholds, quality), found[1])
+
+        self._work.start(translate("recipe", "scoring the archive again"), work)
+        self._look()
+
+    def _on_done(self, answer: object) -> None:
+        if not isinstance(answer, tuple) or answer[0] != self.values():
+            self._look()
+            return
+        self._state.asked, found, left_out = answer
+        for table, flips in ((self.released, found.released), (self.refused, found.refused)):
+            rows = [(str(f.inspection_id), f.serial, str(f.before), str(f.after), str(f.segment), f"{f.score:.3f}") for f in flips]
+            table.fill(rows)
+        self.said.setText(
+            translate("recipe", "{n} parts: {released} would be released, {refused} refused").format(
+                n=found.looked_at, released=len(found.released), refused=len(found.refused)
+            )
+        )
+        unknown = translate("recipe", "{n} parts that were too poor would be judged: nobody knows how").format(n=found.unknown)
+        none = translate("recipe", "no part of this recipe in the archive: nobody knows what the limits do")
+        others = translate("recipe", "{n} parts of another model, or unreadable, were left out").format(n=left_out)
+        known = [text for text, told in ((unknown, found.unknown), (others, left_out)) if told]
+        self.problem.setText(none if not found.looked_at else "; ".join(known))
+        self._look()
+
+    def _save(self) -> None:
+        values, used = self.values(), self._state.in_use
+        if values is None or used is None:
+            return
+        before = used.rounded().limits
+        new: list[Changed] = []
+        for key, value in values.limits.items():
+            if value != before[key]:
+                new.append(Changed(place_of(key, values.recipe), value, used.limits[key]))
+        if values.segments != used.segments:
+            new.append(Changed(("recipes", str(values.recipe), "model", "segment_thresholds"), values.segments, used.segments))
+        self._saving = True
+        self.problem.setText("")
+        self._forget()
+        self.said.setText(translate("recipe", "waiting for the engine"))
+        self._session.change.make(new, self.reason.text())
+
+    def _on_used(self) -> None:
+        if self._saving:
+            self._saving = False
+            self.reason.clear()
+            self._fill()
+            self.said.setText(translate("recipe", "saved and in use"))
+        self._look()
+
+    def _on_refused(self, why: str) -> None:
+        if self._saving:
+            self._saving = False
+            self._fill()
+            self.said.setText("")
+            nothing = translate("recipe", "nothing was changed:")
+            self.problem.setText(f"{nothing} {data(why)}")
+        self._look()
+
+    def close_page(self) -> None:
+        """Nothing is left running."""
+        self._work.close_work()

@@ -1,0 +1,183 @@
+"""Yield and counts by shift and recipe, where and what was found, trends with limits, cycle times."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
+
+from station.analysis.report.page import report
+from station.analysis.statistics import Summary, summarise
+from station.archive.reader import Wanted, find, read_records, read_words
+from station.archive.schema import NAME as INDEX
+from station.channel.requests import Answer, ResetCounts
+from station.domain import Verdict
+from station.journal.users import Level
+from station.panel.look.words import data, translate
+from station.panel.pages.page import Page
+from station.panel.session.session import Session
+from station.panel.widgets.card import Choice, Table, label, titled
+from station.panel.widgets.charts import Chart
+from station.panel.widgets.dialogs import ask_file
+from station.panel.widgets.weld.clock_face import ClockFace
+from station.panel.widgets.work import Told, WorkBar
+from station.records import Record
+from station.settings.model import for_recipe
+
+PARTS = (100, 300, 1000, 5000)
+
+
+class StatisticsPage(Page):
+    """Reads the archive when it is looked at, and on demand."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self.summary: Summary | None = None
+        self.groups = Table(
+            (
+                translate("statistics", "shift"),
+                translate("statistics", "recipe"),
+                "OK",
+                "NOK",
+                translate("statistics", "not judged"),
+                translate("statistics", "yield"),
+            ),
+            stretch=0,
+        )
+        self._lay_out()
+        self._work.done.connect(self._on_done)
+        self._work.failed.connect(self._problem.setText)
+        self.how_many.currentIndexChanged.connect(self.read)
+        session.account.changed.connect(self._on_user)
+        self._on_user()
+        self._first = QTimer(self)
+        self._first.setInterval(300)
+        self._first.timeout.connect(self._when_seen)
+        self._first.start()
+
+    def _lay_out(self) -> None:
+        self.how_many = Choice()
+        last = translate("statistics", "the last")
+        for count in PARTS:
+            self.how_many.addItem(f"{last} {count}", count)
+        self.how_many.setCurrentIndex(1)
+        self.again, self.report = QPushButton(translate("statistics", "Read again")), QPushButton(translate("statistics", "Report…"))
+        self.again.clicked.connect(self.read)
+        self.report.clicked.connect(self._ask_report)
+        self._work, self._problem, self._said = WorkBar(), label("", "problem"), label("", "quiet")
+        self.zero = QPushButton(translate("statistics", "Counters to 0"))
+        self.zero.setToolTip(translate("statistics", "the counters of the page Live and of the PLC; noted in the journal"))
+        self.zero.clicked.connect(self._reset)
+        top = QHBoxLayout()
+        for widget in (self.how_many, self.again, self.report, self.zero, self._problem, self._said):
+            top.addWidget(widget)
+        top.addStretch(1)
+        self.clock = ClockFace()
+        self.reasons = Chart(translate("statistics", "reasons"))
+        self.trends = {
+            "worst": Chart(translate("statistics", "worst score of each part")),
+            "mean_dn": Chart(translate("statistics", "brightness"), translate("statistics", "grey levels")),
+            "sharpness": Chart(translate("statistics", "sharpness")),
+            "saturated": Chart(translate("statistics", "saturated share")),
+            "novelty": Chart(translate("statistics", "distance to the training images")),
+        }
+        self.cycle = Chart(translate("statistics", "inspection time"), "ms")
+        grid = QGridLayout()
+        grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 6)
+        grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 6, 1, 3)
+        grid.addWidget(self.reasons, 0, 9, 1, 3)
+        t = self.trends
+        for index, chart in enumerate((t["worst"], t["mean_dn"], t["sharpness"], self.cycle, t["saturated"], t["novelty"])):
+            row, column = divmod(index, 3)
+            grid.addWidget(chart, 1 + row, 4 * column, 1, 4)
+        for column in range(12):
+            grid.setColumnStretch(column, 1)
+        for row in range(3):
+            grid.setRowStretch(row, 1)
+        rows = QVBoxLayout(self)
+        rows.addLayout(top)
+        rows.addWidget(self._work)
+        rows.addLayout(grid, 1)
+
+    def _on_user(self) -> None:
+        hint = "" if self._session.account.may(Level.OPERATOR) else translate("statistics", "log in first (page Setup)")
+        self.report.setEnabled(not hint)
+        self.report.setToolTip(hint)
+        self.zero.setEnabled(self._session.account.may(Level.SETTER))
+
+    def _reset(self) -> None:
+        self.zero.setEnabled(False)
+        self._session.account.ask(ResetCounts(), self._on_reset, self)
+
+    def _on_reset(self, answer: Answer) -> None:
+        self._problem.setText(data(answer.refusal) if answer.refusal else "")
+        self._on_user()
+
+    def _when_seen(self) -> None:
+        if self.isVisible():
+            self._first.stop()
+            self.read()
+
+    def read(self) -> None:
+        """Read the records of the chosen parts, beside the window."""
+        folder, limit = self._session.received.folder, int(self.how_many.currentData())
+        self._work.start(translate("statistics", "reading records"), lambda told: summarise(_records(folder, limit, told)))
+
+    def _on_done(self, summary: object) -> None:
+        if not isinstance(summary, Summary):
+            self._said.setText(str(summary))
+            return
+        self.summary = summary
+        self._problem.setText("" if summary.points else translate("statistics", "no parts yet"))
+        self.groups.fill([(g.shift, str(g.recipe), str(g.ok), str(g.nok), str(g.error), f"{g.yield_share:.1%}") for g in summary.groups])
+        self.clock.show_counts(summary.segments)
+        self.reasons.show_bars([(data(name), count) for name, count in summary.reasons[:5]])
+        bad = [p.verdict is not Verdict.OK for p in summary.points]
+        status = self._session.received.status
+        s = for_recipe(self._session.received.settings, 1 if status is None else status.recipe)
+        limits: dict[str, list[float]] = {
+            "worst": list(summary.thresholds),
+            "mean_dn": [s.quality.min_mean_dn],
+            "sharpness": [s.quality.min_sharpness],
+            "saturated": [s.quality.max_saturated_share],
+            "novelty": [],
+        }
+        for key, chart in self.trends.items():
+            chart.show_trend([getattr(p, key) for p in summary.points], bad, limits[key])
+        self.cycle.show_histogram([p.cycle_ms for p in summary.points])
+
+    def _ask_report(self) -> None:
+        path = ask_file(self, self._session, translate("statistics", "Report"), "report.html")
+        if path is not None:
+            self.write_report(path)
+
+    def write_report(self, target: Path) -> None:
+        """The chosen parts as one HTML file."""
+        folder, limit = self._session.received.folder, int(self.how_many.currentData())
+
+        def work(told: Told) -> str:
+            entries = []
+            for count, entry in enumerate(read_records(folder, Wanted(newest_first=True, limit=limit))):
+                if not told(count, limit):
+                    return ""
+                entries.append(entry)
+            target.write_text(report(entries[::-1], folder, "weldgate"), encoding="utf-8")
+            return str(target)
+
+        self._work.start(translate("statistics", "report"), work)
+
+    def close_page(self) -> None:
+        """Nothing is left running."""
+        self._first.stop()
+        self._work.close_work()
+
+
+def _records(folder: Path, limit: int, told: Told) -> Iterator[Record]:
+    rows = find(folder, Wanted(newest_first=True, limit=limit)) if (folder / INDEX).exists() else []
+    for count, row in enumerate(rows):
+        if not told(count, len(rows)):
+            return
+        record, _ = read_words(folder, row)
+        if record is not None:
+            yield record

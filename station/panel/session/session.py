@@ -1,0 +1,37 @@
+"""What a page needs of the window: what was received, who is logged in, service mode, changes of settings."""
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from station.panel.session.account import Account
+from station.panel.session.bridge import Bridge
+from station.panel.session.change_client import ChangeClient
+from station.panel.session.engine_requests import EngineRequests
+from station.panel.session.received import Received
+from station.panel.session.service_client import ServiceClient
+from station.settings.model import Settings
+
+
+class Session(QObject):
+    """Holds the four together; each keeps its own state."""
+
+    part_wanted = Signal(int)
+    """Somebody wants to look at this part of the history."""
+
+    def __init__(self, bridge: Bridge, settings: Settings, path: Path) -> None:
+        """`path`: of the settings file."""
+        super().__init__()
+        self._bridge, self._requests = bridge, EngineRequests(bridge)
+        self.received = Received(bridge, settings, path)
+        self.account = Account(self._requests, self.received)
+        self.service = ServiceClient(self.account)
+        self.change = ChangeClient(self.account)
+        self.change.used.connect(self.received.read_settings)
+
+    def close(self) -> None:
+        """Log out, stop the timers and the channel."""
+        self.service.close()
+        self.account.close()
+        self._requests.close()
+        self._bridge.close()

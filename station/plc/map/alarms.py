@@ -1,0 +1,72 @@
+"""What the station raises an alarm for: code, cause, next action. The same code on the screen, in ERROR_CODE and in the register map."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from station.defects import Reason
+from station.plc.map.codes import (
+    ERROR_ABORTED,
+    ERROR_BAD_TRIGGER_ID,
+    ERROR_DEADLINE,
+    ERROR_LINK_LOST,
+    ERROR_STUCK_BIT,
+)
+from station.plc.map.registers import ERROR_NOT_JUDGED
+
+
+class Alarm(IntEnum):
+    """Lasting states; those from 16#3000 on are told in ERROR_CODE while nothing else is."""
+
+    CAMERA_LOST = 0x3001
+    ARCHIVE_FULL = 0x3002
+    DISK_FILLS = 0x3003
+    PLC_SILENT = 0x3004
+    SELF_TEST_FAILED = 0x3005
+    MASTER_WRONG = 0x3006
+    MASTERS_DUE = 0x3007
+    PICTURES_DRIFT = 0x3008
+    SETTINGS_REFUSED = 0x3009
+
+
+@dataclass(frozen=True, slots=True)
+class Explained:
+    """For the operator."""
+
+    cause: str
+    action: str
+
+
+TEXTS: dict[int, Explained] = {
+    Alarm.CAMERA_LOST: Explained("camera lost", "check power and cable of the camera; the station connects again by itself"),
+    Alarm.ARCHIVE_FULL: Explained("no records can be written", "make room on the archive's disk, check that it is writable"),
+    Alarm.DISK_FILLS: Explained("the archive's disk fills", "make room, or keep less (archive.keep)"),
+    Alarm.PLC_SILENT: Explained("the PLC's heartbeat stands still", "check the PLC program and the network to the PLC"),
+    Alarm.SELF_TEST_FAILED: Explained("the stored frame is judged differently", "restart the station; check the PC's memory"),
+    Alarm.MASTER_WRONG: Explained("a master was judged wrongly", "check master, light and focus; judge the master again"),
+    Alarm.MASTERS_DUE: Explained("the check of the masters is due", "put the masters in and judge them"),
+    Alarm.PICTURES_DRIFT: Explained("the pictures drift", "check light, focus, glass and the surface of the parts"),
+    Alarm.SETTINGS_REFUSED: Explained("changed settings could not be used", "see the engine's log; the settings before are in use"),
+    ERROR_DEADLINE: Explained("no result within the deadline", "see cycle times on the page Statistics; check the PC's load"),
+    ERROR_ABORTED: Explained("the PLC aborted the part", "see the line's program"),
+    ERROR_BAD_TRIGGER_ID: Explained("TRIGGER_ID was 0 or repeated", "correct the PLC program: each part needs a new number"),
+    ERROR_STUCK_BIT: Explained("TRIGGER or RESULT_ACK was held too long", "correct the PLC program: see the page Line"),
+    ERROR_LINK_LOST: Explained("the link was lost while the result was written", "check the network to the PLC"),
+}
+
+_AGAIN = "judge the part again; if it comes back, "
+_PART_ACTIONS = {
+    Reason.NO_WELD_FOUND: "check that a part lies in the nest, and the camera's view",
+    Reason.WELD_OUT_OF_VIEW: "check the part's seat and the camera's position",
+    Reason.WRONG_SIZE: "set width and height of the camera as in the settings",
+    Reason.INCOMPLETE_FRAME: "check network cable, switch and jumbo frames",
+    Reason.TOO_DARK: "check the light and the exposure",
+    Reason.TOO_BRIGHT: "check the light and the exposure",
+    Reason.BLURRED: "check focus and glass, and that the part stands still",
+    Reason.CAMERA_LOST: "check power and cable of the camera",
+    Reason.NO_FRAME: "check the trigger line and camera.timeout_ms",
+    Reason.MODEL_FAILED: "restart the station, restore the model file",
+    Reason.RECORD_FAILED: "check the archive's disk",
+    Reason.INTERNAL: "send the engine's log to the maker",
+}
+for _reason, _action in _PART_ACTIONS.items():
+    TEXTS[ERROR_NOT_JUDGED + _reason.code] = Explained(str(_reason), _AGAIN + _action)

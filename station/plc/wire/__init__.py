@@ -1,0 +1,1 @@
+"""Modbus TCP on the wire: server, client, framing, access and TLS."""

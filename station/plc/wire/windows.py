@@ -1,0 +1,217 @@
+"""The two windows on the wire: in our own memory that the PLC reaches into (server), or in the PLC's memory (client)."""
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from station.errors import LineError
+from station.plc.map.registers import BY_NAME, COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS, Status, reordered
+from station.plc.wire.access import Network
+from station.plc.wire.modbus import ModbusClient, ModbusServer
+from station.plc.wire.tls import Tls, client_context, server_context
+from station.settings.model import PlcSettings
+
+SHOWS = int(Status.RESULT_VALID | Status.OK | Status.NOK)
+HEAD = BY_NAME["SEQ_HEAD"].address - STATUS_START
+AGE = BY_NAME["RESULT_AGE_10MS"].address - STATUS_START
+RETRY_S = 0.5
+WAITING = "waiting to connect again"
+
+
+class Wire(Protocol):
+    """How the windows travel. All methods belong to one loop."""
+
+    @property
+    def port(self) -> int:
+        """Port in use."""
+
+    @property
+    def tick_s(self) -> float:
+        """Time between two looks at the command window."""
+
+    async def open(self, wake: Callable[[], None]) -> None:
+        """Begin; `wake` is called when there may be something new. Raises LineError if that can never work."""
+
+    async def close(self) -> None:
+        """Leave no result behind, end."""
+
+    async def read_command(self) -> list[int]:
+        """The command window, read at once. Raises LineError if the PLC does not answer."""
+
+    async def publish(self, words: list[int]) -> None:
+        """Write the status window so that no reader ever takes half of a record for one. Raises LineError: effect unknown."""
+
+
+class ServerWire:
+    """The PLC is the client."""
+
+    tick_s = 0.01
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        *,
+        allow: Sequence[Network],
+        writer_idle_s: float,
+        low_word_first: bool,
+        tls: Tls,
+    ) -> None:
+        self._low_word_first = low_word_first
+        self._wake: Callable[[], None] = lambda: None
+        self._server = ModbusServer(
+            host,
+            port,
+            words=STATUS_START + STATUS_WORDS,
+            writable=range(COMMAND_START, COMMAND_START + COMMAND_WORDS),
+            on_write=lambda: self._wake(),
+            allow=allow,
+            writer_idle_s=writer_idle_s,
+            tls=tls,
+        )
+
+    @property
+    def port(self) -> int:
+        """Port in use."""
+        return self._server.port
+
+    async def open(self, wake: Callable[[], None]) -> None:
+        """Listen. Raises LineError if the port cannot be had."""
+        self._wake = wake
+        await self._server.start()
+
+    async def close(self) -> None:
+        """Zero all and stop."""
+        await self._server.stop()
+
+    async def read_command(self) -> list[int]:
+        """The command window."""
+        words = await self._server.read(COMMAND_START, COMMAND_WORDS)
+        return reordered(COMMAND_START, words) if self._low_word_first else words
+
+    async def publish(self, words: list[int]) -> None:
+        """The whole window in one call."""
+        await self._server.write(STATUS_START, reordered(STATUS_START, words) if self._low_word_first else words)
+
+
+class ClientWire:
+    """The PLC is the server: its memory keeps what was written last, so the old result is wiped before anything else."""
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        *,
+        unit: int,
+        bases: tuple[int, int],
+        poll_s: float,
+        timeout_s: float,
+        low_word_first: bool,
+        tls: Tls,
+    ) -> None:
+        """`bases`: addresses of the command and of the status window in the PLC."""
+        self._client = ModbusClient(host, port, unit=unit, timeout_s=timeout_s, tls=tls)
+        self.port, self.tick_s = port, poll_s
+        self._command_base, self._status_base = bases
+        self._low_word_first = low_word_first
+        self._written: list[int] | None = None
+        """Status window as the PLC has it; None: unknown."""
+        self._connected = False
+        self._tried_s = -1e9
+
+    async def open(self, wake: Callable[[], None]) -> None:
+        """Nothing to do: the PLC may come later."""
+
+    async def close(self) -> None:
+        """Wipe the result, drop the connection."""
+        if self._connected:
+            try:
+                await self._invalidate()
+            except LineError:
+                pass  # the PLC's watchdog must see it
+        self._client.close()
+        self._connected = False
+
+    async def read_command(self) -> list[int]:
+        """The command window; connects if need be, and then wipes the status window first. Raises LineError."""
+        if not self._connected:
+            await self._connect()
+        try:
+            words = await self._client.read(self._command_base, COMMAND_WORDS)
+        except LineError:
+            self._lost()
+            raise
+        return reordered(COMMAND_START, words) if self._low_word_first else words
+
+    async def publish(self, words: list[int]) -> None:
+        """The record, then STATUS, whose bits say that it counts; before another record all bits go that do not hold any longer."""
+        if self._low_word_first:
+            words = reordered(STATUS_START, words)
+        before = self._written
+        if before is not None and _but_age(before) == _but_age(words):
+            return
+        try:
+            if before is not None and before[HEAD] != words[HEAD] and before[0] & SHOWS:
+                await self._status([before[0] & words[0] & ~SHOWS])  # READY must not outlive the result
+            if before is None or before[1:] != words[1:]:
+                await self._record(words)
+            if before is None or before[0] != words[0]:
+                await self._status(words[:1])
+        except LineError:
+            self._lost()
+            raise
+        self._written = list(words)
+
+    async def _connect(self) -> None:
+        now = time.monotonic()
+        if now - self._tried_s < RETRY_S:
+            raise LineError(WAITING)
+        self._tried_s = now
+        await self._client.connect()
+        try:
+            await self._invalidate()
+        except LineError:
+            self._lost()
+            raise
+        self._connected = True
+
+    async def _invalidate(self) -> None:
+        await self._status([0])
+        await self._record([0] * STATUS_WORDS)
+
+    def _lost(self) -> None:
+        self._client.close()
+        self._connected, self._written = False, None
+
+    async def _status(self, word: list[int]) -> None:
+        await self._client.write(self._status_base, word)
+
+    async def _record(self, words: list[int]) -> None:
+        await self._client.write(self._status_base + 1, words[1:])
+
+
+def _but_age(words: list[int]) -> list[int]:
+    return [*words[:AGE], *words[AGE + 1 :]]
+
+
+def make_wire(settings: PlcSettings) -> Wire:
+    """Make the wire that the settings name, not yet open. Raises SettingsError."""
+    if settings.mode == "server":
+        return ServerWire(
+            settings.host,
+            settings.port,
+            allow=settings.allow,
+            writer_idle_s=settings.writer_idle_ms / 1000,
+            low_word_first=settings.low_word_first,
+            tls=None if settings.tls is None else server_context(settings.tls),
+        )
+    return ClientWire(
+        settings.host,
+        settings.port,
+        unit=settings.unit,
+        bases=(settings.command_base, settings.status_base),
+        poll_s=settings.poll_ms / 1000,
+        timeout_s=settings.timeout_ms / 1000,
+        low_word_first=settings.low_word_first,
+        tls=None if settings.tls is None else client_context(settings.tls),
+    )

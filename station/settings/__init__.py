@@ -1,0 +1,1 @@
+"""station.toml and what was changed at the station, as checked values."""
