@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.errors import SynthError
-from synth.part import Truth
-from synth.recipe import RECIPES, Recipe, read_recipe
-from synth.switches import Switch, without
+from synth.part.part import Truth
+from synth.part.recipe import RECIPES, Recipe, read_recipe
+from synth.part.switches import Switch, without
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-    from synth.spectrum import WeldModel
+    from synth.measured.spectrum import WeldModel
 
 SHARES = {
     "line": {Truth.OK: 0.4, Truth.HOLE: 0.3, Truth.MISSING_WELD: 0.3},
@@ -115,8 +115,8 @@ def _checked(arguments: argparse.Namespace) -> tuple[Recipe, frozenset[Switch], 
     if arguments.recipe is not None:
         recipe = read_recipe(arguments.recipe, recipe)
     switches = without(getattr(arguments, "off", []))
-    from synth.measurement import SHIPPED, read_measurement
-    from synth.spectrum import derive
+    from synth.measured.measurement import SHIPPED, read_measurement
+    from synth.measured.spectrum import derive
 
     return recipe, switches, derive(read_measurement(arguments.measurement or SHIPPED, arguments.step_um))
 
@@ -131,7 +131,7 @@ def _progress() -> "Iterator[Progress]":
 
 
 def _dataset(arguments: argparse.Namespace) -> None:
-    from synth.dataset import Order, cluster, workers, write_dataset
+    from synth.output.dataset import Order, cluster, workers, write_dataset
 
     recipe, switches, model = _checked(arguments)
     order = Order(arguments.seed, arguments.count, recipe, switches, arguments.flat, arguments.heights)
@@ -143,7 +143,7 @@ def _dataset(arguments: argparse.Namespace) -> None:
 
 
 def _part(arguments: argparse.Namespace) -> None:
-    from synth.lot import write_lot
+    from synth.output.lot import write_lot
 
     recipe, switches, model = _checked(arguments)
     with _progress() as progress:
@@ -164,7 +164,7 @@ def _part(arguments: argparse.Namespace) -> None:
 
 
 def _sheet(arguments: argparse.Namespace) -> None:
-    from synth.sheet import dataset_sheet, switch_sheet
+    from synth.output.sheet import dataset_sheet, switch_sheet
 
     if arguments.dataset is not None:
         dataset_sheet(arguments.dataset, arguments.out)
@@ -175,9 +175,9 @@ def _sheet(arguments: argparse.Namespace) -> None:
 
 
 def _measurement(arguments: argparse.Namespace) -> None:
-    from synth.figures import measurement_figure
-    from synth.measurement import SHIPPED, read_measurement
-    from synth.spectrum import derive
+    from synth.measured.measurement import SHIPPED, read_measurement
+    from synth.measured.spectrum import derive
+    from synth.output.figures import measurement_figure
 
     measurement = read_measurement(arguments.file or SHIPPED, arguments.step_um)
     rows, columns = measurement.height_um.shape
@@ -197,9 +197,9 @@ def _measurement(arguments: argparse.Namespace) -> None:
 
 
 def _calibrate(arguments: argparse.Namespace) -> None:
-    from synth.calibrate import ALPHAS, calibrate, read_crops
-    from synth.figures import calibration_figure
-    from synth.storage import write_text
+    from synth.output.calibrate import ALPHAS, calibrate, read_crops
+    from synth.output.figures import calibration_figure
+    from synth.output.storage import write_text
 
     recipe, switches, model = _checked(arguments)
     crops = read_crops(arguments.images)

@@ -13,19 +13,19 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from synth.dataset import Order, workers, write_dataset
+from synth.camera.optics import Optics
+from synth.camera.picture import flat_crops, flat_window
+from synth.camera.render import mitsuba_scene, render, start
+from synth.camera.scene import flat_scene, window_pixels
 from synth.errors import SynthError
-from synth.measurement import SHIPPED, read_measurement
-from synth.mesh import part_meshes
-from synth.optics import Optics
-from synth.part import Part
-from synth.picture import flat_crops, flat_window
-from synth.plan import FLAT_PER_SHARD, Shard, plan_flat, quotas
-from synth.recipe import PAPER, WIDE
-from synth.render import mitsuba_scene, render, start
-from synth.scene import flat_scene, window_pixels
-from synth.spectrum import WeldModel, derive
-from synth.switches import ALL
+from synth.measured.measurement import SHIPPED, read_measurement
+from synth.measured.spectrum import WeldModel, derive
+from synth.output.dataset import Order, workers, write_dataset
+from synth.output.plan import FLAT_PER_SHARD, Shard, plan_flat, quotas
+from synth.part.part import Part
+from synth.part.recipe import PAPER, WIDE
+from synth.part.switches import ALL
+from synth.surface.mesh import part_meshes
 
 SAMPLES = 64
 """Of the plain script: two emitter samples each, so that its noise is that of the generator's 4 rays with all emitters."""

@@ -28,7 +28,7 @@ from station.inspection.loading import prepare
 from station.plc.line import make_line
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.settings.model import Settings
-from synth.feed import Feed
+from synth.camera.feed import Feed
 
 
 def main(argv: Sequence[str] | None = None) -> int:

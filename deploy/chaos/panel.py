@@ -27,7 +27,7 @@ from station.archive.reader import find
 from station.files.image import read_image
 from station.plc.map.registers import VerdictCode
 from station.plc.simulated.line import SimulatedLine
-from synth.feed import Feed
+from synth.camera.feed import Feed
 
 WAYS = ("no window", "killed and restarted", "hanging")
 START_S = 3.0

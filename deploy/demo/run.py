@@ -27,8 +27,8 @@ from deploy.demo.summary import DemoPart, Judged, count, summarise, tell, write_
 from station.errors import LineError, WeldgateError
 from station.files.installation import room_command
 from station.plc.simulated.line import SimulatedLine
+from synth.camera.feed import Feed
 from synth.errors import SynthError
-from synth.feed import Feed
 
 RENDER_PATIENCE_S = 120.0
 

@@ -30,7 +30,7 @@ from station.journal.users import Level
 from station.panel.app import open_window
 from station.panel.window import Window
 from station.plc.simulated.line import SimulatedLine
-from synth.feed import Feed
+from synth.camera.feed import Feed
 
 PARTS = 12
 VIEWS: tuple[tuple[str, int, int], ...] = (

@@ -16,7 +16,7 @@ from station.camera.replay import ReplayCamera
 from station.domain import Image, Origin
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
 from station.settings.camera import AnyCamera, CameraSettings, PylonSettings, ReplaySettings
-from synth.feed import Feed
+from synth.camera.feed import Feed
 
 Make = Callable[[list[Image]], Camera]
 SMALL = {"width_px": 1280, "height_px": 1040}

@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from models.classifier import export as export_file
 
-from models import export as export_file
 from models.errors import LearningError
 from models.export import Contract, export, export_ring, read_network
 from models.network import STATISTICS, WeldNet

@@ -29,7 +29,7 @@ from station.plc.map.alarms import Alarm
 from station.plc.map.registers import VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.settings import adjustments
-from synth.feed import Feed
+from synth.camera.feed import Feed
 
 LEFT = Qt.MouseButton.LeftButton
 

@@ -17,7 +17,7 @@ from station.classify.drift import Reference, write_reference
 from station.files.durable import replacing, write_whole
 from station.replay.results import write_csv
 from synth.errors import SynthError
-from synth.storage import write_bytes
+from synth.output.storage import write_bytes
 from tests.conftest import ROOT
 
 HALF = """

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from synth.measurement import SHIPPED, Measurement, read_measurement
-from synth.spectrum import WeldModel, derive
+from synth.measured.measurement import SHIPPED, Measurement, read_measurement
+from synth.measured.spectrum import WeldModel, derive
 
 
 @pytest.fixture(scope="session")

@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.calibrate import ALPHAS, calibrate, chi_square, read_crops, regions
+from synth.camera.optics import Optics
+from synth.camera.picture import flat_crops
 from synth.errors import SynthError
-from synth.optics import Optics
-from synth.picture import flat_crops
-from synth.plan import plan_flat
-from synth.recipe import LINE, PAPER
-from synth.spectrum import WeldModel
-from synth.storage import write_image
-from synth.switches import ALL
+from synth.measured.spectrum import WeldModel
+from synth.output.calibrate import ALPHAS, calibrate, chi_square, read_crops, regions
+from synth.output.plan import plan_flat
+from synth.output.storage import write_image
+from synth.part.recipe import LINE, PAPER
+from synth.part.switches import ALL
 
 
 @pytest.mark.render

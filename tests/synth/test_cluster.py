@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from synth.dataset import Order, write_dataset
-from synth.recipe import PAPER
-from synth.spectrum import WeldModel
-from synth.switches import ALL
+from synth.measured.spectrum import WeldModel
+from synth.output.dataset import Order, write_dataset
+from synth.part.recipe import PAPER
+from synth.part.switches import ALL
 from tests.conftest import ROOT
 
 CODE = """

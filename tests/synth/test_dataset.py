@@ -17,13 +17,13 @@ from hypothesis import strategies as st
 from models.labelled import Defect, crop_label
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENTS
-from synth.dataset import Order, workers, write_dataset
 from synth.errors import SynthError
-from synth.part import Hole, MissingWeld, Truth, draw_part
-from synth.plan import KINDS, crop_kind, plan_arcs, plan_flat, quotas
-from synth.recipe import PAPER, WIDE
-from synth.spectrum import WeldModel
-from synth.switches import ALL
+from synth.measured.spectrum import WeldModel
+from synth.output.dataset import Order, workers, write_dataset
+from synth.output.plan import KINDS, crop_kind, plan_arcs, plan_flat, quotas
+from synth.part.part import Hole, MissingWeld, Truth, draw_part
+from synth.part.recipe import PAPER, WIDE
+from synth.part.switches import ALL
 from tests.conftest import ROOT
 
 

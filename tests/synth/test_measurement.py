@@ -8,8 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from synth.errors import SynthError
-from synth.made import HEIGHT_STEP_UM, NOTE, make_weld, write_x3p
-from synth.measurement import SHIPPED, Measurement, read_measurement
+from synth.measured.artificial import HEIGHT_STEP_UM, NOTE, make_weld, write_x3p
+from synth.measured.measurement import SHIPPED, Measurement, read_measurement
 
 Array = NDArray[np.float64]
 

@@ -7,16 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synth.contour import contour, overlap_weight
-from synth.defects import hole_mask, outline
-from synth.labels import label, ring_px
-from synth.mesh import angles, part_meshes
-from synth.optics import Optics
-from synth.part import Hole, Truth, draw_part
-from synth.recipe import PAPER, WIDE, Recipe
-from synth.spectrum import WeldModel
-from synth.switches import ALL, Switch
-from synth.topography import relief
+from synth.camera.optics import Optics
+from synth.camera.projection import ring_px
+from synth.defects.hole import hole_mask, outline
+from synth.measured.spectrum import WeldModel
+from synth.output.labels import label
+from synth.part.part import Hole, Truth, draw_part
+from synth.part.recipe import PAPER, WIDE, Recipe
+from synth.part.switches import ALL, Switch
+from synth.surface.contour import contour, overlap_weight
+from synth.surface.mesh import angles, part_meshes
+from synth.surface.topography import relief
 
 SEEDS = st.integers(0, 10**6)
 THETA = np.arange(4096) * (2 * np.pi / 4096)
@@ -129,7 +130,7 @@ def test_each_of_the_256_combinations_gives_a_weld(bits: int, model: WeldModel) 
 
 
 def test_perlin_noise_is_periodic_and_even() -> None:
-    from synth.noise import perlin
+    from synth.surface.noise import perlin
 
     field = perlin(np.random.default_rng(0), (240, 160), (12, 8))
     assert np.abs(field).max() <= 1.01

@@ -6,8 +6,8 @@ import pytest
 
 from synth.__main__ import main
 from synth.errors import SynthError
-from synth.recipe import LINE, PAPER, RECIPES, WIDE, read_recipe
-from synth.switches import ALL, Switch, without
+from synth.part.recipe import LINE, PAPER, RECIPES, WIDE, read_recipe
+from synth.part.switches import ALL, Switch, without
 
 
 def test_a_file_changes_what_it_names(tmp_path: Path) -> None:

@@ -10,16 +10,17 @@ import numpy as np
 import pytest
 
 from synth.__main__ import main
-from synth.labels import mask, outlines, ring_px
-from synth.optics import Optics
-from synth.part import Hole, MissingWeld, Part, Truth, draw_part
-from synth.picture import band, flat_crops, flat_window, picture
-from synth.plan import plan_flat
-from synth.recipe import LINE, PAPER, WIDE, Recipe
-from synth.render import mitsuba_scene, render, start
-from synth.scene import part_scene, window_pixels
-from synth.spectrum import WeldModel
-from synth.switches import ALL, Switch
+from synth.camera.optics import Optics
+from synth.camera.picture import band, flat_crops, flat_window, picture
+from synth.camera.projection import ring_px
+from synth.camera.render import mitsuba_scene, render, start
+from synth.camera.scene import part_scene, window_pixels
+from synth.measured.spectrum import WeldModel
+from synth.output.labels import mask, outlines
+from synth.output.plan import plan_flat
+from synth.part.part import Hole, MissingWeld, Part, Truth, draw_part
+from synth.part.recipe import LINE, PAPER, WIDE, Recipe
+from synth.part.switches import ALL, Switch
 
 pytestmark = pytest.mark.render
 OPTICS = Optics()

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from synth.errors import SynthError
-from synth.measurement import Measurement, read_measurement
-from synth.spectrum import (
+from synth.measured.measurement import Measurement, read_measurement
+from synth.measured.spectrum import (
     THRESHOLD,
     VARIATION,
     Gaussian,

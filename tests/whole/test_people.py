@@ -30,7 +30,7 @@ from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.wire.modbus import ModbusClient
 from station.settings import adjustments
 from station.settings.file import load
-from synth.feed import Feed
+from synth.camera.feed import Feed
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import label_with
 

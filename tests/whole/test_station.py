@@ -33,7 +33,7 @@ from station.plc.line import ModbusLine, make_line
 from station.plc.map.registers import CommandCode, Flags, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.settings.model import Settings
-from synth.feed import Feed
+from synth.camera.feed import Feed
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import label_with, labels
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from station.domain import SEGMENTS
 from synth.errors import SynthError
-from synth.part import Hole, MissingWeld, Part, Truth, draw_hole, draw_part
-from synth.recipe import Recipe
-from synth.switches import Switch
+from synth.part.part import Hole, MissingWeld, Part, Truth, draw_hole, draw_part
+from synth.part.recipe import Recipe
+from synth.part.switches import Switch
 
 OK, HOLE, MISSING = KINDS = ("ok", "hole", "missing_weld")
 FLAT_PER_SHARD = 24

@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from skimage.draw import polygon
-from skimage.measure import CircleModel
 
 from station.domain import STRIP_COLUMNS, STRIP_ROWS, Ring
 from station.vision.unwrap import frame_to_strip
-from synth.contour import contour
-from synth.defects import outline
-from synth.mesh import angles
-from synth.optics import Optics
-from synth.part import MissingWeld, Part, Truth
-from synth.pose import embed, to_world
+from synth.camera.optics import Optics
+from synth.camera.projection import project, ring_px
+from synth.defects.hole import outline
+from synth.part.part import MissingWeld, Part, Truth
+from synth.surface.contour import contour
+from synth.surface.mesh import angles
 
 Array = NDArray[np.float64]
 
@@ -34,28 +33,19 @@ class Outline:
     end_deg: float
 
 
-def ring_px(part: Part, optics: Optics) -> tuple[float, float, float]:
-    """Centre x, y and radius in frame pixels: least-squares circle through the projected centre line."""
-    angle = np.linspace(0, 2 * np.pi, 720, endpoint=False)
-    points = _project(part, optics, angle, np.full_like(angle, part.radius_mm))
-    circle = CircleModel.from_estimate(points)  # type: ignore[no-untyped-call]
-    x, y = circle.center
-    return float(x), float(y), float(circle.radius)
-
-
 def outlines(part: Part, optics: Optics) -> list[Outline]:
     """Openings in the weld: the holes, and the bare joint of each missing weld."""
     found = []
     for hole in part.holes:
         angle, radius_mm = outline(hole, part)
         half_deg = np.rad2deg(hole.length_mm / part.radius_mm / 2)
-        found.append(Outline("hole", _project(part, optics, angle, radius_mm), hole.angle_deg - half_deg, hole.angle_deg + half_deg))
+        found.append(Outline("hole", project(part, optics, angle, radius_mm), hole.angle_deg - half_deg, hole.angle_deg + half_deg))
     if part.missing:
         theta = angles(part)
         line = contour(part, theta)
         for arc in part.missing:
             angle, inner, outer = _along(part, arc, theta, line.joint_inner_mm, line.joint_outer_mm)
-            edge = [_project(part, optics, angle, outer), _project(part, optics, angle, inner)[::-1]]
+            edge = [project(part, optics, angle, outer), project(part, optics, angle, inner)[::-1]]
             found.append(Outline("missing_weld", np.concatenate(edge), arc.start_deg, arc.end_deg))
     return found
 
@@ -100,12 +90,12 @@ def label(part: Part, optics: Optics, name: str, origin_px: tuple[int, int], siz
     defects = []
     for hole in part.holes:
         angle, radius_mm = outline(hole, part)
-        points = _project(part, optics, angle, radius_mm) - origin_px
+        points = project(part, optics, angle, radius_mm) - origin_px
         defects.append(_defect(_hole_kind(hole.length_mm), points, center, hole.length_mm, hole.width_mm))
     for arc in part.missing:
         angle = np.deg2rad(np.linspace(arc.start_deg, arc.end_deg, 361))
         radii = part.radius_mm + part.half_width_mm * np.array([[-1.0], [1.0]])
-        points = np.concatenate([_project(part, optics, angle, np.full_like(angle, r[0])) for r in radii]) - origin_px
+        points = np.concatenate([project(part, optics, angle, np.full_like(angle, r[0])) for r in radii]) - origin_px
         length_mm = float(np.deg2rad(arc.end_deg - arc.start_deg) * part.radius_mm)
         defects.append(_defect("missing_weld", points, center, length_mm, 2 * part.half_width_mm, arc.end_deg - arc.start_deg >= 360))
     return {
@@ -147,8 +137,3 @@ def _defect(
         "width_mm": round(width_mm, 3),
         "bbox_px": [round(float(v), 1) for v in box],
     }
-
-
-def _project(part: Part, optics: Optics, angle_rad: Array, radius_mm: Array) -> Array:
-    """Points of the weld at the outer partner's height, in frame pixels (K, 2)."""
-    return optics.project(to_world(part, embed(part, angle_rad, radius_mm, np.array(0.0))))

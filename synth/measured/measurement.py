@@ -16,7 +16,7 @@ from synth.errors import SynthError
 
 Array = NDArray[np.float64]
 
-SHIPPED = Path(__file__).parent / "shipped" / "weld.x3p"
+SHIPPED = Path(__file__).parents[1] / "shipped" / "weld.x3p"
 """A made measurement, in place of a real one: see its metadata."""
 STEP_UM = (0.1, 50.0)
 SIZE_MM = (0.5, 50.0)

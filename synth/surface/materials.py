@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.mesh import plate_mm
-from synth.noise import gaussian
-from synth.part import Part
-from synth.switches import Switch
+from synth.part.part import Part
+from synth.part.switches import Switch
+from synth.surface.mesh import plate_mm
+from synth.surface.noise import gaussian
 
 Texture = NDArray[np.float32]
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.part import Part
-from synth.switches import Switch
+from synth.part.part import Part
+from synth.part.switches import Switch
 
 Array = NDArray[np.float64]
 

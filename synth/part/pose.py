@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.part import Part
+from synth.part.part import Part
 
 Array = NDArray[np.float64]
 

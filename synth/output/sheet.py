@@ -9,14 +9,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.camera.optics import Optics
+from synth.camera.picture import flat_crops
 from synth.errors import SynthError
-from synth.optics import Optics
-from synth.picture import flat_crops
-from synth.plan import HOLE, KINDS, MISSING, OK, plan_flat
-from synth.recipe import Recipe
-from synth.spectrum import WeldModel
-from synth.storage import write_image
-from synth.switches import ALL, Switch
+from synth.measured.spectrum import WeldModel
+from synth.output.plan import HOLE, KINDS, MISSING, OK, plan_flat
+from synth.output.storage import write_image
+from synth.part.recipe import Recipe
+from synth.part.switches import ALL, Switch
 
 Image = NDArray[np.uint8]
 

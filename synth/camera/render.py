@@ -13,11 +13,11 @@ import mitsuba as mi
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.lights import Lights
-from synth.materials import METALS, SOOT_REFLECTANCE, Surface
-from synth.mesh import FLOOR_MM, Mesh
-from synth.optics import Optics
-from synth.scene import Pixels, Scene
+from synth.camera.lights import Lights
+from synth.camera.optics import Optics
+from synth.camera.scene import Pixels, Scene
+from synth.surface.materials import METALS, SOOT_REFLECTANCE, Surface
+from synth.surface.mesh import FLOOR_MM, Mesh
 
 SAMPLES = 4
 CHUNK = 2_000_000

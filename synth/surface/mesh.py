@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.contour import Contour, contour
-from synth.defects import hole_mask
-from synth.part import Part
-from synth.pose import embed, pose
-from synth.spectrum import WeldModel
-from synth.topography import relief
+from synth.defects.hole import hole_mask
+from synth.measured.spectrum import WeldModel
+from synth.part.part import Part
+from synth.part.pose import embed, pose
+from synth.surface.contour import Contour, contour
+from synth.surface.topography import relief
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
 from synth.errors import SynthError
-from synth.measurement import Measurement
+from synth.measured.measurement import Measurement
 
 Array = NDArray[np.float64]
 

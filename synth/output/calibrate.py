@@ -8,13 +8,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.camera.optics import Optics
+from synth.camera.picture import CROP_PX, flat_crops
 from synth.errors import SynthError
-from synth.optics import Optics
-from synth.picture import CROP_PX, flat_crops
-from synth.plan import OK, plan_flat
-from synth.recipe import Recipe
-from synth.spectrum import WeldModel
-from synth.switches import Switch
+from synth.measured.spectrum import WeldModel
+from synth.output.plan import OK, plan_flat
+from synth.part.recipe import Recipe
+from synth.part.switches import Switch
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -21,14 +21,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from synth.camera.picture import CROP_PX
 from synth.errors import SynthError
-from synth.picture import CROP_PX
-from synth.plan import KINDS, Shard, plan_arcs, plan_flat, quotas
-from synth.recipe import Recipe
-from synth.shard import DETECTED, Job, Made, make
-from synth.spectrum import WeldModel
-from synth.storage import claim, write_bytes, write_text
-from synth.switches import Switch
+from synth.measured.spectrum import WeldModel
+from synth.output.plan import KINDS, Shard, plan_arcs, plan_flat, quotas
+from synth.output.shard import DETECTED, Job, Made, make
+from synth.output.storage import claim, write_bytes, write_text
+from synth.part.recipe import Recipe
+from synth.part.switches import Switch
 
 FORMAT = 1
 SHARES = (0.5, 0.25, 0.25)
@@ -53,7 +53,7 @@ def write_dataset(out: Path, order: Order, model: WeldModel, executor: Executor 
     Without an executor all is done in this process. Raises SynthError if `out` holds another dataset, a file cannot be written or a
     worker dies; what is finished stays and is not made again.
     """
-    from synth.render import start
+    from synth.camera.render import start
 
     variant = start()
     wanted = quotas(order.count, order.shares)
@@ -100,7 +100,7 @@ def workers(count: int) -> Iterator[Executor]:
 def _begin(threads: int) -> None:
     import cv2
 
-    from synth.render import start
+    from synth.camera.render import start
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to answer
     cv2.setNumThreads(threads)

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.lights import Lights, lights
-from synth.materials import Surface, bead_surface, floor_reflectance, plate_surface
-from synth.mesh import FLAT_LENGTH_MM, FLAT_MM, Mesh, join, moved, part_meshes
-from synth.part import Part
-from synth.spectrum import WeldModel
+from synth.camera.lights import Lights, lights
+from synth.measured.spectrum import WeldModel
+from synth.part.part import Part
+from synth.surface.materials import Surface, bead_surface, floor_reflectance, plate_surface
+from synth.surface.mesh import FLAT_LENGTH_MM, FLAT_MM, Mesh, join, moved, part_meshes
 
 TILE_MM = FLAT_MM + 0.6
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.noise import harmonics
-from synth.part import Part
-from synth.switches import Switch
+from synth.part.part import Part
+from synth.part.switches import Switch
+from synth.surface.noise import harmonics
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from synth.recipe import Range, Recipe
-from synth.switches import ALL, Switch
+from synth.part.recipe import Range, Recipe
+from synth.part.switches import ALL, Switch
 
 
 class Truth(StrEnum):

@@ -81,7 +81,7 @@ def write_x3p(path: Path, height_um: Array, valid: NDArray[np.bool_], step_um: f
 </Axes></Record1>
 <Record2><Date>2026-11-22T00:00:00</Date><Creator>weldgate</Creator>
 <Instrument><Manufacturer>weldgate</Manufacturer><Model>made surface</Model><Serial>none</Serial><Version>1</Version></Instrument>
-<CalibrationDate>2026-11-22T00:00:00</CalibrationDate><ProbingSystem><Type>Software</Type><Identification>synth.made</Identification>
+<CalibrationDate>2026-11-22T00:00:00</CalibrationDate><ProbingSystem><Type>Software</Type><Identification>synth.measured.artificial</Identification>
 </ProbingSystem><Comment>{note}</Comment></Record2>
 <Record3><MatrixDimension><SizeX>{columns}</SizeX><SizeY>{rows}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
 <DataLink><PointDataLink>bindata/data.bin</PointDataLink><MD5ChecksumPointData>{hashlib.md5(data).hexdigest().upper()}</MD5ChecksumPointData>

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.contour import from_start_mm
-from synth.noise import gaussian
-from synth.part import Part
+from synth.part.part import Part
+from synth.surface.contour import from_start_mm
+from synth.surface.noise import gaussian
 
 Array = NDArray[np.float64]
 

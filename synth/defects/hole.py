@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from skimage.draw import polygon
 
-from synth.contour import Contour
-from synth.part import Hole, Part
+from synth.part.part import Hole, Part
+from synth.surface.contour import Contour
 
 Array = NDArray[np.float64]
 

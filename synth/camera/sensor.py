@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.optics import Optics
-from synth.part import Part
+from synth.camera.optics import Optics
+from synth.part.part import Part
 
 FULL_WELL_E = 10_000.0
 """Electrons at grey level 255."""

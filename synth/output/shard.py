@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from station.domain import SEGMENT_PX, SEGMENTS, Ring
 from station.vision.unwrap import segments, strip_to_frame, unwrap
-from synth.labels import Outline, mask, outlines, ring_px, strip_mask
-from synth.optics import Optics
-from synth.picture import CROP_PX, band, flat_crops, flat_window
-from synth.plan import HOLE, MISSING, RING_ERROR_PX, Crop, Shard
-from synth.spectrum import WeldModel
-from synth.storage import encode
+from synth.camera.optics import Optics
+from synth.camera.picture import CROP_PX, band, flat_crops, flat_window
+from synth.camera.projection import ring_px
+from synth.measured.spectrum import WeldModel
+from synth.output.labels import Outline, mask, outlines, strip_mask
+from synth.output.plan import HOLE, MISSING, RING_ERROR_PX, Crop, Shard
+from synth.output.storage import encode
 
 DETECTED = (HOLE, MISSING)
 """Classes of the detection labels, in order."""

@@ -7,12 +7,12 @@ float64, mm.
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.contour import from_start_mm, overlap_weight
-from synth.noise import gaussian, perlin
-from synth.part import Part
-from synth.ripples import ripples
-from synth.spectrum import WeldModel, resample, synthesize
-from synth.switches import Switch
+from synth.measured.spectrum import WeldModel, resample, synthesize
+from synth.part.part import Part
+from synth.part.switches import Switch
+from synth.surface.contour import from_start_mm, overlap_weight
+from synth.surface.noise import gaussian, perlin
+from synth.surface.ripples import ripples
 
 Array = NDArray[np.float64]
 

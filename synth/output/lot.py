@@ -13,14 +13,15 @@ import numpy as np
 
 from station.domain import STRIP_COLUMNS, STRIP_ROWS, Ring
 from station.vision.unwrap import unwrap
-from synth.labels import label, mask, outlines, ring_px, strip_mask
-from synth.optics import Optics
-from synth.part import Part, Truth, draw_part
-from synth.picture import Image, Window, picture, ring_window
-from synth.recipe import Recipe
-from synth.spectrum import WeldModel
-from synth.storage import claim, write_image, write_text
-from synth.switches import Switch
+from synth.camera.optics import Optics
+from synth.camera.picture import Image, Window, picture, ring_window
+from synth.camera.projection import ring_px
+from synth.measured.spectrum import WeldModel
+from synth.output.labels import label, mask, outlines, strip_mask
+from synth.output.storage import claim, write_image, write_text
+from synth.part.part import Part, Truth, draw_part
+from synth.part.recipe import Recipe
+from synth.part.switches import Switch
 
 CONVENTION = (
     "angle 0 = +x (right), clockwise as seen in the image, [start, end], end may exceed 360; "

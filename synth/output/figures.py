@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from synth.calibrate import ALPHAS, Calibration
 from synth.errors import SynthError
-from synth.measurement import Measurement
-from synth.spectrum import WeldModel, shift_rows, synthesize
+from synth.measured.measurement import Measurement
+from synth.measured.spectrum import WeldModel, shift_rows, synthesize
+from synth.output.calibrate import ALPHAS, Calibration
 
 
 def measurement_figure(measurement: Measurement, model: WeldModel, out: Path) -> None:

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from station.domain import SEGMENT_PX, STRIP_ROWS
-from synth.labels import ring_px
-from synth.optics import Optics
-from synth.part import Part
-from synth.scene import Pixels, flat_scene, join_pixels, part_scene, window_pixels
-from synth.sensor import expose
-from synth.spectrum import WeldModel
+from synth.camera.optics import Optics
+from synth.camera.projection import ring_px
+from synth.camera.scene import Pixels, flat_scene, join_pixels, part_scene, window_pixels
+from synth.camera.sensor import expose
+from synth.measured.spectrum import WeldModel
+from synth.part.part import Part
 
 Image = NDArray[np.uint8]
 Map = NDArray[np.float32]
@@ -41,7 +41,7 @@ def ring_window(part: Part, optics: Optics) -> Window:
 
 def picture(part: Part, model: WeldModel, optics: Optics, window: Window | None = None) -> Image:
     """Camera picture (H, W) uint8 of a window, by default the whole frame. Away from the weld one ray a pixel is enough."""
-    from synth.render import SAMPLES, render
+    from synth.camera.render import SAMPLES, render
 
     x, y, width, height = window or (0, 0, optics.width_px, optics.height_px)
     scene = part_scene(part, model)
@@ -56,7 +56,7 @@ def picture(part: Part, model: WeldModel, optics: Optics, window: Window | None 
 
 def band(part: Part, model: WeldModel, optics: Optics) -> tuple[Image, Map, Window]:
     """Camera picture of the window round the ring, rendered in the band that the crops show and black elsewhere; heights in mm."""
-    from synth.render import render
+    from synth.camera.render import render
 
     window = ring_window(part, optics)
     x, y, width, height = window
@@ -70,7 +70,7 @@ def band(part: Part, model: WeldModel, optics: Optics) -> tuple[Image, Map, Wind
 
 def flat_crops(parts: Sequence[Part], model: WeldModel, optics: Optics) -> tuple[list[Image], Map, Map]:
     """Flat crops (128, 128) uint8 of parts drawn flat; their heights in mm and floor shares, (K, 128, 128)."""
-    from synth.render import render
+    from synth.camera.render import render
 
     x, y, side, _ = flat_window(optics)
     pixels = [window_pixels(x - MARGIN_PX, y - MARGIN_PX, side + 2 * MARGIN_PX, side + 2 * MARGIN_PX, i) for i in range(len(parts))]

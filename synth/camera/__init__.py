@@ -1,0 +1,1 @@
+"""From surfaces to camera images: optics, light, rays and sensor."""

@@ -1,0 +1,1 @@
+"""Surface measurements of a real weld, and the weld model derived from them."""

@@ -1,0 +1,1 @@
+"""What the commands write: datasets, lots, contact sheets, figures, calibrations."""

@@ -1,0 +1,1 @@
+"""One part as data: recipes and what is drawn from them."""

@@ -1,0 +1,1 @@
+"""From a drawn part to its surfaces: border lines, relief, meshes and materials."""
