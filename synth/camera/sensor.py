@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from synth.camera.optics import Optics
 from synth.part.part import Part
+from synth.part.streams import Stream, stream
 
 FULL_WELL_E = 10_000.0
 """Electrons at grey level 255."""
@@ -17,7 +18,7 @@ NOMINAL_GAIN = 17.0
 
 def expose(radiance: NDArray[np.float32], part: Part, optics: Optics, origin_px: tuple[int, int] = (0, 0)) -> NDArray[np.uint8]:
     """Grey levels (H, W) uint8 of a radiance window (H, W) whose top left pixel lies at `origin_px` (x, y) of the frame."""
-    rng = np.random.default_rng([part.seed, 7])
+    rng = stream(part.seed, Stream.SENSOR_NOISE)
     image = cv2.GaussianBlur(radiance, (0, 0), part.defocus_px)
     if part.veil > 0:
         image = (1 - part.veil) * image + part.veil * VEIL_RADIANCE

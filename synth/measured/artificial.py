@@ -12,6 +12,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.part.streams import Stream, stream
+
 STEP_UM = 3.0
 SIZE = 2000
 HEIGHT_STEP_UM = 0.05
@@ -25,7 +27,7 @@ Array = NDArray[np.float64]
 
 def make_weld(seed: int = 1) -> tuple[Array, NDArray[np.bool_]]:
     """Heights (2000, 2000) in um, rows across the weld, and which of them are valid."""
-    rng = np.random.default_rng([seed, 20])
+    rng = stream(seed, Stream.ARTIFICIAL_MEASUREMENT)
     x_mm = np.arange(SIZE) * STEP_UM / 1000
     y_mm = (np.arange(SIZE) - SIZE / 2) * STEP_UM / 1000
     half_mm, pitch_mm = 0.47, 0.155

@@ -10,6 +10,7 @@ from synth.errors import SynthError
 from synth.measured.measurement import Measurement
 from synth.measured.spectrum import WeldModel, shift_rows, synthesize
 from synth.output.calibrate import ALPHAS, Calibration
+from synth.part.streams import Stream, stream
 
 
 def measurement_figure(measurement: Measurement, model: WeldModel, out: Path) -> None:
@@ -39,7 +40,7 @@ def measurement_figure(measurement: Measurement, model: WeldModel, out: Path) ->
         axes[name].legend()
         axes[name].grid(alpha=0.3)
 
-    surface = synthesize(np.random.default_rng(1), model.amplitude)
+    surface = synthesize(stream(1, Stream.FIGURE), model.amplitude)
     bent = shift_rows(surface, model.shift(y) / step)
     weight = np.exp(-0.5 * ((y - model.edge.center_mm) / model.edge.sigma_mm) ** 2)[:, None]
     columns = min(surface.shape[1], 2 * surface.shape[0])

@@ -21,6 +21,7 @@ from synth.output.labels import label, mask, outlines, strip_mask
 from synth.output.storage import claim, write_image, write_text
 from synth.part.part import Part, Truth, draw_part
 from synth.part.recipe import Recipe
+from synth.part.streams import Stream, stream
 from synth.part.switches import Switch
 
 CONVENTION = (
@@ -31,7 +32,7 @@ CONVENTION = (
 
 def plan(seed: int, count: int, shares: dict[Truth, float]) -> Iterator[tuple[int, Truth]]:
     """Seeds and truths of a lot: the shares hold in any long stretch, in an order drawn from `seed`."""
-    rng = np.random.default_rng([seed, 0])
+    rng = stream(seed, Stream.LOT)
     truths = list(shares)
     weights = np.array([shares[t] for t in truths])
     for index in range(count):

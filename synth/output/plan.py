@@ -8,6 +8,7 @@ from station.domain import SEGMENTS
 from synth.errors import SynthError
 from synth.part.part import Hole, MissingWeld, Part, Truth, draw_hole, draw_part
 from synth.part.recipe import Recipe
+from synth.part.streams import Stream, stream
 from synth.part.switches import Switch
 
 OK, HOLE, MISSING = KINDS = ("ok", "hole", "missing_weld")
@@ -61,7 +62,7 @@ def quotas(count: int, shares: tuple[float, float, float]) -> dict[str, int]:
 
 def plan_flat(seed: int, wanted: dict[str, int], recipe: Recipe, switches: frozenset[Switch]) -> list[Shard]:
     """The paper's crops: each a straight piece of its own weld."""
-    rng = np.random.default_rng([seed, 30])
+    rng = stream(seed, Stream.STRAIGHT_PLAN)
     kinds = [kind for kind, count in wanted.items() for _ in range(count)]
     rng.shuffle(kinds)
     shards: list[Shard] = []
@@ -74,7 +75,7 @@ def plan_flat(seed: int, wanted: dict[str, int], recipe: Recipe, switches: froze
 
 
 def _flat_part(seed: int, kind: str, recipe: Recipe, switches: frozenset[Switch]) -> Part:
-    rng = np.random.default_rng([seed, 31])
+    rng = stream(seed, Stream.STRAIGHT_PIECE)
     half_width_mm = draw_part(seed, Truth.OK, recipe, switches, ((), ())).half_width_mm
     holes: tuple[Hole, ...] = ()
     missing: tuple[MissingWeld, ...] = ()
@@ -97,7 +98,7 @@ def plan_arcs(seed: int, wanted: dict[str, int], recipe: Recipe, switches: froze
     number = 0
     while any(left.values()):
         index = len(shards)
-        rng = np.random.default_rng([seed, 32, index])
+        rng = stream(seed, Stream.RING_PLAN, index)
         part = _ring(seed * 10_000_000 + index, rng, recipe, switches, left)
         crops = []
         for segment in rng.permutation(SEGMENTS):

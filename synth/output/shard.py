@@ -17,6 +17,7 @@ from synth.measured.spectrum import WeldModel
 from synth.output.labels import Outline, mask, outlines, strip_mask
 from synth.output.plan import HOLE, MISSING, RING_ERROR_PX, Crop, Shard
 from synth.output.storage import encode
+from synth.part.streams import Stream, stream
 
 DETECTED = (HOLE, MISSING)
 """Classes of the detection labels, in order."""
@@ -88,7 +89,7 @@ def _arcs(job: Job, optics: Optics) -> list[Shot]:
     part = job.shard.parts[0]
     image, height_mm, window = band(part, job.model, optics)
     x, y, radius = ring_px(part, optics)
-    dx, dy, dr = np.random.default_rng([part.seed, 14]).uniform(-RING_ERROR_PX, RING_ERROR_PX, 3)
+    dx, dy, dr = stream(part.seed, Stream.RING_ERROR).uniform(-RING_ERROR_PX, RING_ERROR_PX, 3)
     ring = Ring(x - window[0] + float(dx), y - window[1] + float(dy), radius + float(dr), 1.0)
     crops = segments(unwrap(image, ring))
     heights = _unwrap_map(height_mm, ring) if job.heights else np.zeros((SEGMENT_PX, SEGMENTS * SEGMENT_PX), np.float32)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.part.part import Part
+from synth.part.streams import Stream, stream
 from synth.part.switches import Switch
 from synth.surface.noise import harmonics
 
@@ -28,7 +29,7 @@ class Contour:
 
 def contour(part: Part, theta_rad: Array) -> Contour:
     """Borders of the bead, random if so switched, and the wavy joint (paper, eq. 4)."""
-    rng = np.random.default_rng([part.seed, 2])
+    rng = stream(part.seed, Stream.CONTOUR)
     center_mm = part.radius_mm + part.bead_offset_mm + part.wobble_mm * 0.6 * harmonics(rng, theta_rad, 2, 9)
     rough = [part.wobble_mm * (0.5 * harmonics(rng, theta_rad, 2, 30) + 0.4 * harmonics(rng, theta_rad, 40, 400)) for _ in range(2)]
     if Switch.RANDOM_CONTOUR not in part.switches:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.part.part import Part
+from synth.part.streams import Stream, stream
 from synth.part.switches import Switch
 from synth.surface.mesh import plate_mm
 from synth.surface.noise import gaussian
@@ -41,7 +42,7 @@ class Surface:
 
 def plate_surface(part: Part) -> Surface:
     """Partners from above, `plate_mm(part)` a side, weld in the middle: row = y down, column = x right."""
-    rng = np.random.default_rng([part.seed, 5])
+    rng = stream(part.seed, Stream.PLATE_TEXTURE)
     n = FLAT_TEXELS if part.flat else PLATE_TEXELS
     mm = n / plate_mm(part)
     image = np.full((n, n), part.partner_reflectance, np.float32)
@@ -124,7 +125,7 @@ def _scratches_and_dust(part: Part, rng: np.random.Generator, image: Texture, mm
 
 def bead_surface(part: Part, length_mm: float) -> Surface:
     """Bead over (across, angle), (64, W) with `length_mm` along W: row 0 = inner border, column 0 = the first angle."""
-    rng = np.random.default_rng([part.seed, 6])
+    rng = stream(part.seed, Stream.BEAD_TEXTURE)
     rows, columns = shape = (BEAD_ROWS, max(128, round(length_mm * 58.5)))
     cell = (rows / (2 * part.half_width_mm), columns / length_mm)
     t = np.linspace(-1, 1, rows)[:, None]
@@ -153,12 +154,12 @@ def bead_surface(part: Part, length_mm: float) -> Surface:
 def floor_reflectance(part: Part) -> Texture:
     """Reflectance of what lies below holes and joint, seen from above as `plate_surface`, (H, W)."""
     n = FLAT_TEXELS if part.flat else PLATE_TEXELS
-    field = _field(np.random.default_rng([part.seed, 15]), n, (0.1, 0.1), n / plate_mm(part))
+    field = _field(stream(part.seed, Stream.FLOOR_TEXTURE), n, (0.1, 0.1), n / plate_mm(part))
     return np.asarray(np.clip(part.floor_reflectance * np.exp(part.floor_texture * field), 0, 1), np.float32)
 
 
 def _bead_scratches(part: Part, image: Texture) -> None:
-    rng = np.random.default_rng([part.seed, 10])
+    rng = stream(part.seed, Stream.BEAD_SCRATCHES)
     rows, columns = image.shape
     for _ in range(part.bead_scratches):
         start = rng.uniform((0, 0), (columns, rows))

@@ -10,6 +10,7 @@ from synth.defects.hole import hole_mask
 from synth.measured.spectrum import WeldModel
 from synth.part.part import Part
 from synth.part.pose import embed, pose
+from synth.part.streams import Stream, stream
 from synth.surface.contour import Contour, contour
 from synth.surface.topography import relief
 
@@ -143,7 +144,7 @@ def _rim_sink(part: Part, hole: NDArray[np.bool_], theta: Array) -> Array:
 
 def _spatter(part: Part, line: Contour, theta: Array, height: Array | None) -> list[Mesh]:
     """Droplets: domes on the partners or on the bead, none over a hole."""
-    rng = np.random.default_rng([part.seed, 12])
+    rng = stream(part.seed, Stream.SPATTER)
     found = []
     for _ in range(rng.poisson(part.spatter * FLAT_SHARE) if part.flat else part.spatter):
         at = float(rng.uniform(theta[0], theta[-1]))
@@ -174,7 +175,7 @@ def _dome(part: Part, at_rad: float, radius_mm: float, base_mm: float, size_mm: 
 
 def _fibres(part: Part) -> list[Mesh]:
     """Thin curved ribbons just above the surface."""
-    rng = np.random.default_rng([part.seed, 13])
+    rng = stream(part.seed, Stream.FIBRES)
     found = []
     for _ in range(rng.poisson(part.fibres * FLAT_SHARE) if part.flat else part.fibres):
         theta = float(rng.uniform(-0.15, 0.15)) if part.flat else float(rng.uniform(0, 2 * np.pi))

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.part.part import Part
+from synth.part.streams import Stream, stream
 from synth.surface.contour import from_start_mm
 from synth.surface.noise import gaussian
 
@@ -12,7 +13,7 @@ Array = NDArray[np.float64]
 
 def ripples(part: Part, theta_rad: Array, t: Array) -> Array:
     """Height (M, N) of the ripples, mm: crescents or arrows with wandering pitch and strength, gathered where sparse."""
-    rng = np.random.default_rng([part.seed, 3])
+    rng = stream(part.seed, Stream.RIPPLES)
     shape = (theta_rad.size, t.size)
     step_rad = theta_rad[1] - theta_rad[0]
     cell_mm = (float(step_rad) * part.radius_mm, 2 * part.half_width_mm / shape[1])

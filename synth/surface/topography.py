@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from synth.measured.spectrum import WeldModel, resample, synthesize
 from synth.part.part import Part
+from synth.part.streams import Stream, stream
 from synth.part.switches import Switch
 from synth.surface.contour import from_start_mm, overlap_weight
 from synth.surface.noise import gaussian, perlin
@@ -36,7 +37,7 @@ def relief(part: Part, theta_rad: Array, t: Array, model: WeldModel) -> Array:
 
 def spectral(part: Part, theta_rad: Array, t: Array, model: WeldModel) -> Array:
     """Surface of eq. (2), its rows shifted along the weld by the Gaussian of Fig. 4b: the scales. Seamless round the ring."""
-    rng = np.random.default_rng([part.seed, 3])
+    rng = stream(part.seed, Stream.SPECTRUM)
     turn = 2 * np.pi
     whole = bool(np.ptp(theta_rad) > 6.0)
     length_mm = turn * part.radius_mm if whole else model.length_mm
@@ -65,7 +66,7 @@ def edge_weight(part: Part, t: Array, model: WeldModel) -> Array:
 
 def discontinuities(part: Part, theta_rad: Array, t: Array) -> Array:
     """Perlin noise of two grains, scaled so that each has its share of the slope `rough_slope`."""
-    rng = np.random.default_rng([part.seed, 11])
+    rng = stream(part.seed, Stream.PERLIN)
     shape = (theta_rad.size, t.size)
     step_mm = float(theta_rad[1] - theta_rad[0]) * part.radius_mm
     size_mm = (shape[0] * step_mm, 2 * part.half_width_mm)
@@ -81,7 +82,7 @@ def _groove(part: Part, theta_rad: Array, t: Array) -> Array:
     """Undercut: a groove of varying depth along both borders."""
     if part.undercut_mm == 0:
         return np.zeros((theta_rad.size, t.size))
-    rng = np.random.default_rng([part.seed, 9])
+    rng = stream(part.seed, Stream.UNDERCUT)
     cell_mm = float(theta_rad[1] - theta_rad[0]) * part.radius_mm
     along = np.clip(0.3 + gaussian(rng, (theta_rad.size, t.size), (0.8 / cell_mm, t.size)), 0.0, 2.0)
     return np.asarray(-part.undercut_mm * along * np.exp(-0.5 * ((np.abs(t[None, :]) - 0.92) / 0.05) ** 2))
