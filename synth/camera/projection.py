@@ -6,14 +6,14 @@ from skimage.measure import CircleModel
 
 from synth.camera.optics import Optics
 from synth.part.part import Part
-from synth.part.pose import embed, to_world
+from synth.part.pose import to_world
 
 Array = NDArray[np.float64]
 
 
 def project(part: Part, optics: Optics, angle_rad: Array, radius_mm: Array) -> Array:
     """Project points of the weld, taken at the outer partner's height, to frame pixels (K, 2) as (x, y)."""
-    return optics.project(to_world(part, embed(part, angle_rad, radius_mm, np.array(0.0))))
+    return optics.project(to_world(part, part.geometry.embed(angle_rad, radius_mm, np.array(0.0))))
 
 
 def ring_px(part: Part, optics: Optics) -> tuple[float, float, float]:

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 
 from synth.camera.lights import Lights, lights
 from synth.measured.spectrum import WeldModel
+from synth.part.geometry import PIECE_MM
 from synth.part.part import Part
 from synth.surface.materials import Surface, bead_surface, floor_reflectance, plate_surface
-from synth.surface.mesh import FLAT_LENGTH_MM, FLAT_MM, Mesh, join, moved, part_meshes
+from synth.surface.mesh import Mesh, join, moved, part_meshes
 
-TILE_MM = FLAT_MM + 0.6
+TILE_MM = PIECE_MM + 0.6
+"""Distance between the straight pieces of one scene."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +37,7 @@ class Scene:
 
 def part_scene(part: Part, model: WeldModel) -> Scene:
     """Scene of one whole part."""
-    bead = bead_surface(part, 2 * np.pi * part.radius_mm)
+    bead = bead_surface(part, part.geometry.length_mm)
     return Scene((part,), part_meshes(part, model), bead, plate_surface(part), floor_reflectance(part), (lights(part, part.switches),))
 
 
@@ -47,7 +49,7 @@ def flat_scene(parts: Sequence[Part], model: WeldModel) -> Scene:
     for i, part in enumerate(parts):
         for name, mesh in part_meshes(part, model).items():
             meshes.setdefault(name, []).append(moved(mesh, origins[i], i, tiles))
-    beads = [bead_surface(part, FLAT_LENGTH_MM) for part in parts]
+    beads = [bead_surface(part, part.geometry.length_mm) for part in parts]
     plates = [plate_surface(part) for part in parts]
     return Scene(
         tuple(parts),

@@ -37,11 +37,11 @@ def hole_mask(part: Part, theta_rad: Array, line: Contour, columns: int) -> NDAr
     step = theta_rad[1] - theta_rad[0]
     for hole in part.holes:
         angle, radius = outline(hole, part)
-        at = angle if part.flat else angle % (2 * np.pi)
-        period = None if part.flat else 2 * np.pi
-        center, inner, outer = (np.interp(at, theta_rad, v, period=period) for v in (line.center_mm, line.inner_mm, line.outer_mm))
+        center, inner, outer = (
+            np.interp(angle, theta_rad, v, period=part.geometry.period_rad) for v in (line.center_mm, line.inner_mm, line.outer_mm)
+        )
         t = np.where(radius > center, (radius - center) / (outer - center), (radius - center) / (center - inner))
         row, column = (angle - theta_rad[0]) / step - 0.5, (t + 1) / 2 * (columns - 1) - 0.5
-        for turn in (0,) if part.flat else (-rows, 0, rows):
+        for turn in (-rows, 0, rows) if part.geometry.is_closed else (0,):
             mask[polygon(row + turn, column, mask.shape)] = True  # type: ignore[no-untyped-call]
     return mask

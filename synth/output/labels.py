@@ -18,7 +18,6 @@ from synth.camera.projection import project, ring_px
 from synth.defects.hole import outline
 from synth.part.part import MissingWeld, Part, Truth
 from synth.surface.contour import contour
-from synth.surface.mesh import angles
 
 Array = NDArray[np.float64]
 
@@ -41,7 +40,7 @@ def outlines(part: Part, optics: Optics) -> list[Outline]:
         half_deg = np.rad2deg(hole.length_mm / part.radius_mm / 2)
         found.append(Outline("hole", project(part, optics, angle, radius_mm), hole.angle_deg - half_deg, hole.angle_deg + half_deg))
     if part.missing:
-        theta = angles(part)
+        theta = part.geometry.angles()
         line = contour(part, theta)
         for arc in part.missing:
             angle, inner, outer = _along(part, arc, theta, line.joint_inner_mm, line.joint_outer_mm)
@@ -52,7 +51,7 @@ def outlines(part: Part, optics: Optics) -> list[Outline]:
 
 def _along(part: Part, arc: MissingWeld, theta: Array, *values: Array) -> tuple[Array, ...]:
     """Angles of an arc on the bead's grid, ends included, and values there."""
-    if part.flat:
+    if not part.geometry.is_closed:
         keep = (theta >= np.deg2rad(arc.start_deg)) & (theta <= np.deg2rad(arc.end_deg))
         return theta[keep], *(v[keep] for v in values)
     start, end = float(np.deg2rad(arc.start_deg)), float(np.deg2rad(arc.end_deg))

@@ -6,6 +6,7 @@ import numpy as np
 
 from station.domain import SEGMENTS
 from synth.errors import SynthError
+from synth.part.geometry import StraightPiece
 from synth.part.part import Hole, MissingWeld, Part, Truth, draw_hole, draw_part
 from synth.part.recipe import Recipe
 from synth.part.streams import Stream, stream
@@ -44,6 +45,11 @@ class Shard:
     index: int
     parts: tuple[Part, ...]
     crops: tuple[Crop, ...]
+
+    @property
+    def is_straight(self) -> bool:
+        """True if the scene shows straight pieces."""
+        return self.parts[0].form is StraightPiece
 
     @property
     def split(self) -> str:
@@ -85,7 +91,7 @@ def _flat_part(seed: int, kind: str, recipe: Recipe, switches: frozenset[Switch]
     elif kind == MISSING:
         edge = float(rng.uniform(-3, 8)) if rng.random() < 0.35 else 90.0
         missing = (MissingWeld(-90.0, edge) if rng.random() < 0.5 else MissingWeld(-edge, 90.0),)
-    part = draw_part(seed, Truth.OK, recipe, switches, (holes, missing), flat=True)
+    part = draw_part(seed, Truth.OK, recipe, switches, (holes, missing), form=StraightPiece)
     if rng.random() < SEAM_SHARE:
         part = replace(part, start_deg=float(rng.uniform(-SEAM_DEG, SEAM_DEG)))
     return part

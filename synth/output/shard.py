@@ -44,7 +44,7 @@ class Made:
 def make(job: Job) -> Made:
     """Render a shard. Same job, same bytes, on any worker with the same variant of the renderer."""
     optics = Optics()
-    shots = _flat(job.shard, job.model, optics) if job.shard.parts[0].flat else _arcs(job, optics)
+    shots = _flat(job.shard, job.model, optics) if job.shard.is_straight else _arcs(job, optics)
     files: dict[str, bytes] = {}
     entries = []
     for crop, image, height_mm, defects in shots:
@@ -62,8 +62,8 @@ def make(job: Job) -> Made:
             {
                 "file": f"images/{stem}.png",
                 "kind": crop.kind,
-                "seed": job.shard.parts[crop.place if job.shard.parts[0].flat else 0].seed,
-                "segment": None if job.shard.parts[0].flat else crop.place,
+                "seed": job.shard.parts[crop.place if job.shard.is_straight else 0].seed,
+                "segment": None if job.shard.is_straight else crop.place,
                 "sha256": sha256(png).hexdigest(),
                 "defects": [{"kind": o.kind, "box_px": _box(m), "area_px": int(m.sum()), "polygon_px": _polygons(m)} for o, m in defects],
             }

@@ -9,8 +9,12 @@ from enum import StrEnum
 
 import numpy as np
 
+from synth.part.geometry import Geometry, Ring, StraightPiece
 from synth.part.recipe import Range, Recipe
 from synth.part.switches import ALL, Switch
+
+Form = type[Ring] | type[StraightPiece]
+"""Class of a part's geometry."""
 
 
 class Truth(StrEnum):
@@ -93,8 +97,8 @@ class Part:
     read_noise_dn: float
     holes: tuple[Hole, ...] = ()
     missing: tuple[MissingWeld, ...] = ()
-    flat: bool = False
-    """The paper's crop: a straight piece of weld, angles laid out along x at `radius_mm`."""
+    form: Form = Ring
+    """Class of `geometry`."""
     switches: frozenset[Switch] = ALL
     material: str = "aluminium"
     spectral: bool = False
@@ -120,6 +124,11 @@ class Part:
     circles: bool = True
 
     @property
+    def geometry(self) -> Geometry:
+        """Where the weld's points lie."""
+        return self.form(self.radius_mm)
+
+    @property
     def truth(self) -> Truth:
         """What the part is: a missing weld weighs more than a hole."""
         if self.missing:
@@ -133,11 +142,11 @@ def draw_part(
     recipe: Recipe,
     switches: frozenset[Switch] = ALL,
     defects: tuple[tuple[Hole, ...], tuple[MissingWeld, ...]] | None = None,
-    flat: bool = False,
+    form: Form = Ring,
 ) -> Part:
     """Draw the part number `seed` with the wished truth from `recipe`. Same arguments, same part.
 
-    `defects` (holes, missing arcs) takes the place of drawn ones. A flat crop lies in the middle of the picture.
+    `defects` (holes, missing arcs) takes the place of drawn ones. A straight piece lies in the middle of the picture.
     """
     rng = np.random.default_rng([seed, 1])
     look = np.random.default_rng([seed, 8])
@@ -165,7 +174,7 @@ def draw_part(
     shift_mm = (float(rng.uniform(-1, 1)) * recipe.shift_mm, float(rng.uniform(-1, 1)) * recipe.shift_mm)
     return Part(
         seed=seed,
-        center_mm=(0.0, 0.0) if flat else shift_mm,
+        center_mm=(0.0, 0.0) if form is StraightPiece else shift_mm,
         tilt_deg=(float(rng.uniform(-1, 1)) * recipe.tilt_deg, float(rng.uniform(-1, 1)) * recipe.tilt_deg),
         radius_mm=radius_mm,
         half_width_mm=half_width_mm,
@@ -196,7 +205,7 @@ def draw_part(
         read_noise_dn=of(recipe.read_noise_dn),
         holes=holes,
         missing=missing,
-        flat=flat,
+        form=form,
         switches=switches,
         material=recipe.material,
         spectral=bool(look.random() < recipe.spectral_share),

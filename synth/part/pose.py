@@ -1,4 +1,4 @@
-"""Where a part's points lie: along the weld, in part coordinates, in the world. numpy only, mm."""
+"""Where a part's points lie in the world. numpy only, mm."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,17 +6,6 @@ from numpy.typing import NDArray
 from synth.part.part import Part
 
 Array = NDArray[np.float64]
-
-
-def embed(part: Part, theta_rad: Array, radius_mm: Array, z_mm: Array) -> Array:
-    """Weld coordinates to part coordinates (x right, y down, z to the camera), (..., 3).
-
-    A flat crop lays the angle out along x and the radius upwards, as the ring's top does, and as the strip does.
-    """
-    theta_rad, radius_mm, z_mm = np.broadcast_arrays(theta_rad, radius_mm, z_mm)
-    if part.flat:
-        return np.stack([theta_rad * part.radius_mm, part.radius_mm - radius_mm, z_mm], axis=-1)
-    return np.stack([radius_mm * np.cos(theta_rad), radius_mm * np.sin(theta_rad), z_mm], axis=-1)
 
 
 def pose(part: Part) -> Array:

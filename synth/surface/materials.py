@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from synth.part.part import Part
 from synth.part.streams import Stream, stream
 from synth.part.switches import Switch
-from synth.surface.mesh import plate_mm
 from synth.surface.noise import gaussian
 
 Texture = NDArray[np.float32]
@@ -27,8 +26,8 @@ METALS = {
 copper: Johnson and Christy, Phys. Rev. B 6, 4370 (1972); aluminium: Rakic, Appl. Opt. 34, 4755 (1995)."""
 
 SOOT_REFLECTANCE = 0.04
-PLATE_TEXELS = 1536
-FLAT_TEXELS = 256
+PIECE_FRACTION = 0.05
+"""Fraction of a part's scratches and specks that a straight piece has."""
 BEAD_ROWS = 64
 
 
@@ -43,8 +42,8 @@ class Surface:
 def plate_surface(part: Part) -> Surface:
     """Partners from above, `plate_mm(part)` a side, weld in the middle: row = y down, column = x right."""
     rng = stream(part.seed, Stream.PLATE_TEXTURE)
-    n = FLAT_TEXELS if part.flat else PLATE_TEXELS
-    mm = n / plate_mm(part)
+    n = part.geometry.plate_texels
+    mm = n / part.geometry.plate_mm
     image = np.full((n, n), part.partner_reflectance, np.float32)
     stripes = sum(weight * _field(rng, n, (8.0, grain), mm) for weight, grain in ((0.5, 0.5), (0.35, 0.12), (0.4, 0.03)))
     amount = float(rng.uniform(0.03, 0.13))
@@ -73,7 +72,7 @@ def _soot_beside(part: Part, rng: np.random.Generator, x: Texture, y: Texture, m
     cloud = sum(weight * _field(rng, n, (grain, grain), mm) for weight, grain in ((0.6, 1.2), (0.5, 0.5), (0.35, 0.2), (0.2, 0.07)))
     reach = float(rng.uniform(0.1, 0.6))
     amount = -2.2 + 2.2 * part.soot
-    angle = np.rad2deg(x / part.radius_mm if part.flat else np.arctan2(y, x))
+    angle = np.rad2deg(part.geometry.weld_coordinates(x, y)[0])
     ran = np.ones_like(x)
     for arc in part.missing:
         ran[(angle - arc.start_deg) % 360 <= arc.end_deg - arc.start_deg] = 0.35
@@ -82,7 +81,7 @@ def _soot_beside(part: Part, rng: np.random.Generator, x: Texture, y: Texture, m
 
 def _away(part: Part, x: Texture, y: Texture) -> Texture:
     """Distance from the weld's border, 0 on the weld, mm."""
-    across = y if part.flat else np.hypot(x, y) - part.radius_mm
+    across = part.geometry.weld_coordinates(x, y)[1] - part.radius_mm
     return np.asarray(np.maximum(np.abs(across) - part.half_width_mm, 0), np.float32)
 
 
@@ -106,10 +105,8 @@ def _circles(rng: np.random.Generator, image: Texture, mm: float) -> None:
 
 
 def _scratches_and_dust(part: Part, rng: np.random.Generator, image: Texture, mm: float) -> None:
-    """Counts are those of a whole part; a flat crop gets its share by area."""
     n = image.shape[0]
-    share = 0.05 if part.flat else 1.0
-    for _ in range(rng.poisson(part.scratches * share) if part.flat else part.scratches):
+    for _ in range(part.geometry.number(rng, part.scratches, PIECE_FRACTION)):
         start = rng.uniform(0, n, 2)
         bend = rng.uniform(-0.4, 0.4)
         angle, length = rng.uniform(0, 2 * np.pi), rng.uniform(0.5, 4) * mm
@@ -118,7 +115,7 @@ def _scratches_and_dust(part: Part, rng: np.random.Generator, image: Texture, mm
         curve = start + length * np.cumsum(np.hstack([np.cos(heading), np.sin(heading)]), axis=0) / 30
         shade = float(np.clip(image.mean() * rng.uniform(0.6, 1.25), 0, 1))
         cv2.polylines(image, [np.round(curve * 16).astype(np.int32)], False, shade, 1, cv2.LINE_AA, 4)
-    for _ in range(rng.poisson(part.dust * share) if part.flat else part.dust):
+    for _ in range(part.geometry.number(rng, part.dust, PIECE_FRACTION)):
         center = tuple(int(v) for v in rng.uniform(0, n, 2))
         cv2.circle(image, center, max(1, int(rng.uniform(0.015, 0.05) * mm)), float(rng.uniform(0.05, 0.4)), -1, cv2.LINE_AA)
 
@@ -153,8 +150,8 @@ def bead_surface(part: Part, length_mm: float) -> Surface:
 
 def floor_reflectance(part: Part) -> Texture:
     """Reflectance of what lies below holes and joint, seen from above as `plate_surface`, (H, W)."""
-    n = FLAT_TEXELS if part.flat else PLATE_TEXELS
-    field = _field(stream(part.seed, Stream.FLOOR_TEXTURE), n, (0.1, 0.1), n / plate_mm(part))
+    n = part.geometry.plate_texels
+    field = _field(stream(part.seed, Stream.FLOOR_TEXTURE), n, (0.1, 0.1), n / part.geometry.plate_mm)
     return np.asarray(np.clip(part.floor_reflectance * np.exp(part.floor_texture * field), 0, 1), np.float32)
 
 

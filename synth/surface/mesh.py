@@ -9,23 +9,17 @@ from numpy.typing import NDArray
 from synth.defects.hole import hole_mask
 from synth.measured.spectrum import WeldModel
 from synth.part.part import Part
-from synth.part.pose import embed, pose
+from synth.part.pose import pose
 from synth.part.streams import Stream, stream
 from synth.surface.contour import Contour, contour
 from synth.surface.topography import relief
 
 Array = NDArray[np.float64]
 
-ANGLES = 3072
-"""Columns of the bead's grid round the ring: 11 um each."""
 ACROSS = 80
-PLATE_MM = 24.0
-"""Side of the square that the partners' texture covers."""
-FLAT_MM = 2.4
-"""The same of a flat crop; its weld is 2 mm long."""
-FLAT_LENGTH_MM = 2.0
-FLAT_SHARE = 0.15
-"""A flat crop's share of the droplets and fibres of a part: by length it would be a seventeenth, too few to tell droplets from holes."""
+"""Lines of the bead's grid from border to border."""
+PIECE_FRACTION = 0.15
+"""Fraction of a part's droplets and fibres that a straight piece has: by length it would be 0.06, too few to tell droplets from holes."""
 FLOOR_MM = -0.45
 """Height of what lies below the joint."""
 
@@ -43,26 +37,11 @@ class Mesh:
     faces: NDArray[np.uint32]
 
 
-def angles(part: Part) -> Array:
-    """Angles (M,) of the bead's grid, rad: the whole turn, or the piece of a flat crop round 0."""
-    if part.flat:
-        half = FLAT_LENGTH_MM / 2 / part.radius_mm
-        return np.linspace(-half, half, round(ANGLES * half / np.pi))
-    return np.arange(ANGLES, dtype=np.float64) * (2 * np.pi / ANGLES)
-
-
-def plate_mm(part: Part) -> float:
-    """Side of the square that the partners' texture covers."""
-    return FLAT_MM if part.flat else PLATE_MM
-
-
 def part_meshes(part: Part, model: WeldModel) -> dict[str, Mesh]:
     """Meshes by material: "plate" (both partners and spatter), "floor", "bead" (absent without any weld), "fibre" (if any)."""
-    theta = angles(part)
+    theta = part.geometry.angles()
     line = contour(part, theta)
-    reach = FLAT_MM / 2
-    inner_end = part.radius_mm - reach if part.flat else 0.0
-    outer_end = np.full_like(theta, part.radius_mm + reach) if part.flat else _rim(theta)
+    inner_end, outer_end = part.geometry.partner_edges_mm(theta)
     inner = inner_end + np.linspace(0.0, 1.0, 5)[:, None] * (line.inner_mm - inner_end)
     share = np.array([0.0, 0.02, 0.1, 0.4, 1.0])[:, None]
     outer = line.outer_mm + share * (outer_end - line.outer_mm)
@@ -97,20 +76,15 @@ def moved(mesh: Mesh, x_mm: float, tile: int, tiles: int) -> Mesh:
     return replace(mesh, vertices=mesh.vertices + np.array([x_mm, 0, 0], np.float32), uv=uv)
 
 
-def _rim(theta: Array) -> Array:
-    """Radius of the outer partner's edge: a rectangle of 22 x 20 mm with round corners (superellipse)."""
-    return np.asarray((np.abs(np.cos(theta) / 11.0) ** 10 + np.abs(np.sin(theta) / 10.0) ** 10) ** -0.1)
-
-
 def _plate(part: Part, theta: Array, radius_mm: Array, z_mm: float) -> Mesh:
     """Flat rings: radius_mm (K, M), innermost first."""
-    points = embed(part, theta, radius_mm, np.array(z_mm))
+    points = part.geometry.embed(theta, radius_mm, np.array(z_mm))
     normals = np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
     return _mesh(part, points, normals, _plan_uv(part, points), np.ones((radius_mm.shape[0] - 1, theta.size), bool))
 
 
 def _plan_uv(part: Part, points: Array) -> Array:
-    return np.asarray(points[..., :2] / plate_mm(part) + 0.5)
+    return np.asarray(points[..., :2] / part.geometry.plate_mm + 0.5)
 
 
 def _bead(part: Part, theta: Array, line: Contour, model: WeldModel) -> tuple[Mesh, Array]:
@@ -124,11 +98,11 @@ def _bead(part: Part, theta: Array, line: Contour, model: WeldModel) -> tuple[Me
     radius = line.center_mm + above * (line.outer_mm - line.center_mm) + below * (line.inner_mm - line.center_mm)
     lift = np.clip((line.outer_mm - line.inner_mm) / part.half_width_mm, 0, 1)
     height = z.T * lift + part.step_mm * (1 - t[:, None]) / 2
-    points = embed(part, theta, radius, height)
-    along = np.gradient(points, axis=1) if part.flat else np.roll(points, -1, axis=1) - np.roll(points, 1, axis=1)
-    normals = np.cross(np.gradient(points, axis=0), along)
+    points = part.geometry.embed(theta, radius, height)
+    normals = np.cross(np.gradient(points, axis=0), part.geometry.along(points))
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True) + 1e-12
-    u = (theta - theta[0]) / (np.ptp(theta) if part.flat else 2 * np.pi)
+    start, end = part.geometry.ends_rad
+    u = (theta - start) / (end - start)
     uv = np.stack(np.broadcast_arrays(u[None, :], ((t + 1) / 2)[:, None]), axis=-1)
     keep = ~hole.T[:-1] & line.present[None, :] & np.roll(line.present, -1)[None, :]
     return _mesh(part, points, normals, uv, keep), np.where(hole.T, np.nan, height)
@@ -146,7 +120,7 @@ def _spatter(part: Part, line: Contour, theta: Array, height: Array | None) -> l
     """Droplets: domes on the partners or on the bead, none over a hole."""
     rng = stream(part.seed, Stream.SPATTER)
     found = []
-    for _ in range(rng.poisson(part.spatter * FLAT_SHARE) if part.flat else part.spatter):
+    for _ in range(part.geometry.number(rng, part.spatter, PIECE_FRACTION)):
         at = float(rng.uniform(theta[0], theta[-1]))
         away_mm = float(rng.laplace(0.0, 0.5))
         size_mm = float(np.exp(rng.uniform(np.log(0.015), np.log(0.11))))
@@ -167,7 +141,7 @@ def _spatter(part: Part, line: Contour, theta: Array, height: Array | None) -> l
 def _dome(part: Part, at_rad: float, radius_mm: float, base_mm: float, size_mm: float, flatness: float) -> Mesh:
     polar, around = np.meshgrid(np.linspace(0.02, np.pi / 2, 8), np.linspace(0, 2 * np.pi, 20, endpoint=False), indexing="ij")
     local = np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), flatness * np.cos(polar)], axis=-1)
-    points = embed(part, np.array(at_rad), np.array(radius_mm), np.array(base_mm)) + size_mm * local
+    points = part.geometry.embed(np.array(at_rad), np.array(radius_mm), np.array(base_mm)) + size_mm * local
     normals = local / np.array([1.0, 1.0, flatness**2])
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
     return _mesh(part, points, normals, _plan_uv(part, points), np.ones((7, 20), bool), closed=True)
@@ -177,9 +151,9 @@ def _fibres(part: Part) -> list[Mesh]:
     """Thin curved ribbons just above the surface."""
     rng = stream(part.seed, Stream.FIBRES)
     found = []
-    for _ in range(rng.poisson(part.fibres * FLAT_SHARE) if part.flat else part.fibres):
-        theta = float(rng.uniform(-0.15, 0.15)) if part.flat else float(rng.uniform(0, 2 * np.pi))
-        start = embed(part, np.array(theta), np.array(part.radius_mm + rng.normal(0, 0.5)), np.array(0.1))
+    for _ in range(part.geometry.number(rng, part.fibres, PIECE_FRACTION)):
+        theta = float(rng.uniform(*part.geometry.ends_rad))
+        start = part.geometry.embed(np.array(theta), np.array(part.radius_mm + rng.normal(0, 0.5)), np.array(0.1))
         steps = np.linspace(0, 1, 40)
         heading = rng.uniform(0, 2 * np.pi) + rng.normal(0, 1.2) * steps + rng.normal(0, 1.0) * steps**2
         length = float(rng.uniform(0.6, 3.5))
@@ -194,7 +168,7 @@ def _fibres(part: Part) -> list[Mesh]:
 def _mesh(part: Part, points: Array, normals: Array, uv: Array, keep: NDArray[np.bool_], closed: bool | None = None) -> Mesh:
     """Join a (K, M, 3) grid of points, closed along its second axis round a ring, into triangles; `keep` (K - 1, M) selects cells."""
     around = points.shape[1]
-    if part.flat if closed is None else not closed:
+    if not (part.geometry.is_closed if closed is None else closed):
         keep = keep & (np.arange(around) < around - 1)[None, :]
     k, m = np.nonzero(keep)
     right = (m + 1) % around

@@ -38,11 +38,10 @@ def relief(part: Part, theta_rad: Array, t: Array, model: WeldModel) -> Array:
 def spectral(part: Part, theta_rad: Array, t: Array, model: WeldModel) -> Array:
     """Surface of eq. (2), its rows shifted along the weld by the Gaussian of Fig. 4b: the scales. Seamless round the ring."""
     rng = stream(part.seed, Stream.SPECTRUM)
-    turn = 2 * np.pi
-    whole = bool(np.ptp(theta_rad) > 6.0)
-    length_mm = turn * part.radius_mm if whole else model.length_mm
+    closed = part.geometry.is_closed
+    length_mm = part.geometry.length_mm if closed else model.length_mm
     step_mm = float(theta_rad[1] - theta_rad[0]) * part.radius_mm
-    columns = theta_rad.size if whole else round(length_mm / step_mm)
+    columns = theta_rad.size if closed else round(length_mm / step_mm)
     surface_um = synthesize(rng, resample(model, length_mm, (SPECTRUM_ROWS, columns)))
     across_mm = t * part.half_width_mm
     rows = (across_mm / model.width_mm * SPECTRUM_ROWS).round().astype(int) % SPECTRUM_ROWS

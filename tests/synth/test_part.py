@@ -12,11 +12,12 @@ from synth.camera.projection import ring_px
 from synth.defects.hole import hole_mask, outline
 from synth.measured.spectrum import WeldModel
 from synth.output.labels import label
-from synth.part.part import Hole, Truth, draw_part
+from synth.part.geometry import Ring, StraightPiece
+from synth.part.part import Form, Hole, Truth, draw_part
 from synth.part.recipe import PAPER, WIDE, Recipe
 from synth.part.switches import ALL, Switch
 from synth.surface.contour import contour, overlap_weight
-from synth.surface.mesh import angles, part_meshes
+from synth.surface.mesh import part_meshes
 from synth.surface.topography import relief
 
 SEEDS = st.integers(0, 10**6)
@@ -85,9 +86,9 @@ def test_no_bead_where_the_weld_is_missing() -> None:
     assert line.present.any()
 
 
-@pytest.mark.parametrize("flat", [True, False])
-def test_meshes_face_the_camera(flat: bool, model: WeldModel) -> None:
-    part = replace(draw_part(2, Truth.HOLE, WIDE, flat=flat), spatter=6, fibres=2, crater_mm=0.0, overlap_mm=0.0)
+@pytest.mark.parametrize("form", [Ring, StraightPiece])
+def test_meshes_face_the_camera(form: Form, model: WeldModel) -> None:
+    part = replace(draw_part(2, Truth.HOLE, WIDE, form=form), spatter=6, fibres=2, crater_mm=0.0, overlap_mm=0.0)
     meshes = part_meshes(part, model)
     assert set(meshes) == {"bead", "plate", "floor", "fibre"}
     for mesh in meshes.values():
@@ -120,8 +121,8 @@ def test_a_part_shows_holes_and_missing_welds_together() -> None:
 @pytest.mark.parametrize("bits", range(256))
 def test_each_of_the_256_combinations_gives_a_weld(bits: int, model: WeldModel) -> None:
     on = frozenset(s for i, s in enumerate(Switch) if bits >> i & 1)
-    part = draw_part(7, Truth.OK, PAPER, on, flat=True)
-    theta, t = angles(part), np.linspace(-1, 1, 24)
+    part = draw_part(7, Truth.OK, PAPER, on, form=StraightPiece)
+    theta, t = part.geometry.angles(), np.linspace(-1, 1, 24)
     z = relief(part, theta, t, model)
     assert np.isfinite(z).all()
     assert (z.std(axis=0).max() < 1e-9) == (not on & {Switch.TOPOGRAPHY, Switch.PERLIN})

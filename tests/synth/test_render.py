@@ -18,6 +18,7 @@ from synth.camera.scene import part_scene, window_pixels
 from synth.measured.spectrum import WeldModel
 from synth.output.labels import mask, outlines
 from synth.output.plan import plan_flat
+from synth.part.geometry import StraightPiece
 from synth.part.part import Hole, MissingWeld, Part, Truth, draw_part
 from synth.part.recipe import LINE, PAPER, WIDE, Recipe
 from synth.part.switches import ALL, Switch
@@ -54,7 +55,7 @@ def test_holes_open_exactly_where_the_label_says(model: WeldModel) -> None:
 
 
 def test_the_bare_joint_is_masked_exactly(model: WeldModel) -> None:
-    part = replace(draw_part(8, Truth.OK, PAPER, defects=((), (MissingWeld(-90.0, 90.0),)), flat=True), step_mm=0.0)
+    part = replace(draw_part(8, Truth.OK, PAPER, defects=((), (MissingWeld(-90.0, 90.0),)), form=StraightPiece), step_mm=0.0)
     _, _, floors = flat_crops([part], model, OPTICS)
     left, top, width, height = flat_window(OPTICS)
     (opening,) = outlines(part, OPTICS)
