@@ -1,1 +1,1 @@
-"""Parts that never existed: rendered frames of circular laser welds with exact labels."""
+"""The generator: rendered frames of circular laser welds with exact labels."""

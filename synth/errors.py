@@ -1,5 +1,5 @@
-"""SynthError: a user's mistake in a generator command, said in one line."""
+"""The error that a user's mistake in a generator command raises."""
 
 
 class SynthError(Exception):
-    """What is wrong, where, and what to do."""
+    """A user's mistake: one line with what is wrong, where, and what to do."""

@@ -13,18 +13,18 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from synth.camera.frames import piece_crops, piece_window
 from synth.camera.optics import Optics
-from synth.camera.picture import flat_crops, flat_window
 from synth.camera.render import mitsuba_scene, render, start
-from synth.camera.scene import flat_scene, window_pixels
+from synth.camera.scene import piece_scene, window_pixels
 from synth.errors import SynthError
 from synth.measured.measurement import SHIPPED, read_measurement
 from synth.measured.spectrum import WeldModel, derive
 from synth.output.dataset import Order, workers, write_dataset
-from synth.output.plan import FLAT_PER_SHARD, Shard, plan_flat, quotas
+from synth.output.plan import PIECES_PER_SHARD, Shard, plan_pieces, quotas
 from synth.part.part import Part
-from synth.part.recipe import PAPER, WIDE
 from synth.part.switches import ALL
+from synth.recipes.named import PAPER, WIDE
 from synth.surface.mesh import part_meshes
 
 SAMPLES = 64
@@ -50,17 +50,18 @@ def run(rounds: int) -> None:
     """Flat crops and arcs with two workers, beside the plain script with all threads."""
     model, optics = derive(read_measurement(SHIPPED)), Optics()
     start()
-    shards = plan_flat(5, quotas(12, (0.5, 0.25, 0.25)), PAPER, ALL)
+    shards = plan_pieces(5, quotas(12), PAPER, ALL)
     plain(shards[0].parts[0], model, optics)
     seconds: dict[str, list[float]] = {"plain script": [], "generator, flat": [], "generator, arcs": []}
     with workers(2) as pool, tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
-        warm = [Order(1, 48, PAPER, ALL, flat=True), Order(1, 42, WIDE, ALL)]
+        warm = [Order(seed=1, count=48, recipe=PAPER, switches=ALL, is_straight=True), Order(seed=1, count=42, recipe=WIDE, switches=ALL)]
         for order in warm:
-            write_dataset(Path(folder) / f"warm{order.flat}", order, model, pool, lambda n: None)
+            write_dataset(Path(folder) / f"warm{order.is_straight}", order, model, pool, lambda n: None)
         for i in range(rounds):
             seconds["plain script"].append(_timed(lambda: [plain(p, model, optics) for p in shards[0].parts]) / 12)
             for name, recipe, flat in (("generator, flat", PAPER, True), ("generator, arcs", WIDE, False)):
-                order, out = Order(9 + i, 240, recipe, ALL, flat), Path(folder) / f"{flat}{i}"
+                order = Order(seed=9 + i, count=240, recipe=recipe, switches=ALL, is_straight=flat)
+                out = Path(folder) / f"{flat}{i}"
                 seconds[name].append(_timed(lambda order=order, out=out: write_dataset(out, order, model, pool, lambda n: None)) / 240)  # type: ignore[misc]
     table = Table("", "crops per s, median", "ms a crop", "5000 crops, min", "times the plain script")
     base = float(np.median(seconds["plain script"]))
@@ -74,7 +75,7 @@ def run(rounds: int) -> None:
 
 def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
     """One flat crop the plain way: one scene, Mitsuba's spots and direct integrator, one call."""
-    scene = flat_scene([part], model)
+    scene = piece_scene([part], model)
     world: dict[str, Any] = {"type": "scene", "integrator": {"type": "direct", "emitter_samples": 2, "bsdf_samples": 0}}
     world |= {f"shape_{i}": shape for i, shape in enumerate(mitsuba_scene(scene).shapes())}
     for i, (at, value) in enumerate(zip(scene.lights[0].positions_mm, scene.lights[0].intensity, strict=True)):
@@ -86,7 +87,7 @@ def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
             "beam_width": 2.0,
         }
     field = float(2 * np.rad2deg(np.arctan(optics.width_px * optics.pixel_mm / 2 / optics.distance_mm)))
-    crop = dict(zip(("crop_offset_x", "crop_offset_y", "crop_width", "crop_height"), flat_window(optics), strict=True))
+    crop = dict(zip(("crop_offset_x", "crop_offset_y", "crop_width", "crop_height"), piece_window(optics), strict=True))
     film = {"type": "hdrfilm", "width": optics.width_px, "height": optics.height_px, "pixel_format": "luminance", **crop}
     view = mi.ScalarTransform4f().look_at(origin=[0, 0, optics.distance_mm], target=[0, 0, 0], up=[0, 1, 0])
     sensor = mi.load_dict(
@@ -99,8 +100,8 @@ def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
     """Noise of both renders of the same crop, as a share of the signal: the quality that is compared."""
     part = shard.parts[0]
     theirs = plain(part, model, optics).reshape(128, 128)
-    scene = flat_scene([part], model)
-    pixels = window_pixels(*flat_window(optics))
+    scene = piece_scene([part], model)
+    pixels = window_pixels(*piece_window(optics))
     fine = render(scene, optics, pixels, 64).radiance.reshape(128, 128)
     rough = render(scene, optics, pixels).radiance.reshape(128, 128)
     scale = float(np.median(theirs / fine))
@@ -110,13 +111,13 @@ def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
 
 def _parts_of_the_time(model: WeldModel, optics: Optics) -> None:
     """Where the generator's time goes, one process with all threads."""
-    (shard,) = plan_flat(6, quotas(FLAT_PER_SHARD, (0.5, 0.25, 0.25)), PAPER, ALL)
-    flat_crops(shard.parts, model, optics)
-    whole = _timed(lambda: flat_crops(shard.parts, model, optics))
+    (shard,) = plan_pieces(6, quotas(PIECES_PER_SHARD), PAPER, ALL)
+    piece_crops(shard.parts, model, optics)
+    whole = _timed(lambda: piece_crops(shard.parts, model, optics))
     meshes = _timed(lambda: [part_meshes(p, model) for p in shard.parts])
-    scene = _timed(lambda: flat_scene(shard.parts, model))
+    scene = _timed(lambda: piece_scene(shard.parts, model))
     Console().print(
-        f"of {whole / FLAT_PER_SHARD * 1000:.0f} ms a flat crop in one process: relief and meshes {meshes / whole:.0%}, "
+        f"of {whole / PIECES_PER_SHARD * 1000:.0f} ms a flat crop in one process: relief and meshes {meshes / whole:.0%}, "
         f"textures {max(0.0, scene - meshes) / whole:.0%}, tree, rays and light, sensor {(whole - scene) / whole:.0%}"
     )
 

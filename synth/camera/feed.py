@@ -1,4 +1,4 @@
-"""Serves pictures to pylon's emulated camera, a new one at each trigger, to an unmodified station.
+"""Serves images to pylon's emulated camera, a new one at each trigger, for an unmodified station.
 
 A folder of two links to one "current" BMP is read again from disk at each frame; a settings file named by
 PYLON_CAMEMU_PFS_PATH (undocumented: pypylon is pinned, a test proves it) points the emulator at the folder.
@@ -22,7 +22,7 @@ HEADER = """# {05D8C294-F295-4dfb-9D01-096BD04049F4}
 
 
 class Feed:
-    """The picture before one emulated camera. Give `environment` to the station's process."""
+    """The image in front of one emulated camera. Give `environment` to the station's process."""
 
     def __init__(self, folder: Path, serial: str = "0815-0000") -> None:
         """Lay out `folder` (created; must not be in use by another feed)."""
@@ -38,16 +38,17 @@ class Feed:
                 link.symlink_to(self._current.resolve())
         except OSError as error:
             raise SynthError(f"{folder}: the feed cannot be laid out there: {error}") from None
-        lines = ("WidthMax\t4200", "HeightMax\t2160", "TestImageSelector\tOff", f"ImageFilename\t{slots.resolve()}", "ImageFileMode\tOn")
+        size = ("WidthMax\t4200", "HeightMax\t2160")
+        lines = (*size, "TestImageSelector\tOff", f"ImageFilename\t{slots.resolve()}", "ImageFileMode\tOn")
         (profile / f"CamEmu_{serial}.pfs").write_text(HEADER + "\n".join(lines) + "\n")
         self.environment = {"PYLON_CAMEMU": "1", "PYLON_CAMEMU_PFS_PATH": str(profile.resolve())}
 
     def show(self, image: NDArray[np.uint8]) -> None:
-        """Put `image` (H, W) uint8 before the camera; never half a picture."""
+        """Put `image` (H, W) uint8 in front of the camera; never half of one."""
         if not cv2.imwrite(str(self._next), image):
             raise SynthError(f"{self._next}: could not be written; is the disk full?")
         os.replace(self._next, self._current)
 
     def withdraw(self) -> None:
-        """Take the picture away: the next grab fails."""
+        """Remove the image: the next grab fails."""
         self._current.unlink(missing_ok=True)

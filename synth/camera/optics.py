@@ -27,7 +27,7 @@ class Optics:
         return self.distance_mm / self.pixel_mm
 
     def project(self, points_mm: Array) -> Array:
-        """World points (K, 3) to pixels (K, 2) as (x, y): eq. (5) with R, t of a camera on the z axis."""
+        """Project world points (K, 3) to pixels (K, 2) as (x, y): eq. (5), the camera on the z axis."""
         depth = self.distance_mm - points_mm[:, 2]
         x = self.width_px / 2 - 0.5 + self.focal_px * points_mm[:, 0] / depth
         y = self.height_px / 2 - 0.5 - self.focal_px * points_mm[:, 1] / depth

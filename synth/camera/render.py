@@ -1,8 +1,9 @@
 """Scene to linear radiance through Mitsuba 3; the only file that imports mitsuba and drjit.
 
-Rays go only through the pixels that are asked for. Direct light is summed over all emitters at every hit, a strided share of them
-per sample; one of these, drawn in proportion to what it gives, is tested for shadow (resampled importance sampling), so that only
-half-shadows are noisy. Same scene, same bits: each pixel is summed in one thread.
+Rays go only through the requested pixels. Direct light is summed over all emitters at every hit, a strided
+fraction of them per sample; one of these, drawn in proportion to what it gives, is tested for shadow
+(resampled importance sampling), so that only half-shadows are noisy. Same scene, same bits: each pixel is
+summed in one thread.
 """
 
 from dataclasses import dataclass
@@ -16,17 +17,18 @@ from numpy.typing import NDArray
 from synth.camera.lights import Lights
 from synth.camera.optics import Optics
 from synth.camera.scene import Pixels, Scene
-from synth.surface.materials import METALS, SOOT_REFLECTANCE, Surface
+from synth.surface.materials import METALS, SOOT_REFLECTANCE, SurfaceMaps
 from synth.surface.mesh import FLOOR_MM, Mesh
 
 SAMPLES = 4
+"""Rays through each pixel."""
 CHUNK = 2_000_000
 """Pixels rendered at once: bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rendering:
-    """Per pixel (P,) float32: linear radiance, mean height of what is seen in mm, and the share of rays that reach the floor."""
+    """Result per pixel (P,) float32: radiance, mean height in mm, fraction of rays that reach the floor."""
 
     radiance: NDArray[np.float32]
     height_mm: NDArray[np.float32]
@@ -34,7 +36,7 @@ class Rendering:
 
 
 def start(threads: int | None = None) -> str:
-    """Choose the variant, CUDA if there is a GPU, else LLVM, and the number of threads; return its name."""
+    """Choose Mitsuba's variant (CUDA with a GPU, else LLVM) and threads; return the variant's name."""
     if mi.variant() is None:
         mi.set_variant("cuda_ad_mono", "llvm_ad_mono")
     if threads is not None:
@@ -46,16 +48,17 @@ def render(scene: Scene, optics: Optics, pixels: Pixels, samples: int = SAMPLES)
     """Render `pixels` with `samples` stratified rays each (a square number)."""
     start()
     traced = mitsuba_scene(scene)
-    parts = [
-        _shade(
-            traced, scene, optics, Pixels(pixels.x_px[i : i + CHUNK], pixels.y_px[i : i + CHUNK], pixels.tile[i : i + CHUNK]), samples, i
-        )
-        for i in range(0, len(pixels.x_px), CHUNK)
+    chunks = [
+        _shade(traced, scene, optics, pixels[first : first + CHUNK], samples=samples, first=first)
+        for first in range(0, len(pixels.x_px), CHUNK)
     ]
-    return Rendering(*(np.concatenate([p[k] for p in parts]) for k in range(3)))
+    return Rendering(*(np.concatenate([p[k] for p in chunks]) for k in range(3)))
 
 
-def _shade(world: Any, scene: Scene, optics: Optics, pixels: Pixels, samples: int, first: int) -> tuple[NDArray[np.float32], ...]:
+def _shade(
+    world: Any, scene: Scene, optics: Optics, pixels: Pixels, *, samples: int, first: int
+) -> tuple[NDArray[np.float32], ...]:
+    """Return radiance, height and floor fraction of pixels, of which the first is number `first` of all."""
     count = len(pixels.x_px)
     positions, strength, sigma, emitters, lambertian = _emitters(scene.lights)
     tile = mi.UInt32(pixels.tile)
@@ -63,10 +66,12 @@ def _shade(world: Any, scene: Scene, optics: Optics, pixels: Pixels, samples: in
     at_x, at_y = mi.Float(pixels.x_px), mi.Float(pixels.y_px)
     index = dr.arange(mi.UInt32, count) + first
     # neighbours' streams must not be alike, or their errors do not average out
-    state, sequence = mi.sample_tea_32(mi.UInt32(scene.parts[0].seed & 0xFFFFFFFF), index)  # type: ignore[call-overload]
+    seed = mi.UInt32(scene.parts[0].seed & 0xFFFFFFFF)
+    state, sequence = mi.sample_tea_32(seed, index)  # type: ignore[call-overload]
     rng: Any = mi.PCG32(size=count, initstate=mi.UInt64(state), initseq=mi.UInt64(sequence))  # type: ignore[operator]
-    offset = mi.UInt32(rng.next_float32() * emitters)
     side = max(1, round(samples**0.5))
+    # with more rays than emitters, each emitter must still meet every ray alike
+    offset = mi.UInt32(rng.next_float32() * max(emitters, side * side))
     radiance, height, floor = (dr.zeros(mi.Float, count) for _ in range(3))
     for sample in range(side * side):
         x = at_x + (sample % side + rng.next_float32()) / side - 0.5 - (optics.width_px / 2 - 0.5)
@@ -76,7 +81,19 @@ def _shade(world: Any, scene: Scene, optics: Optics, pixels: Pixels, samples: in
         valid = hit.is_valid()
         base, shift = tile * emitters, mi.Point3f(origin, 0.0, 0.0)
         light, chosen, rng = _gather_light(  # type: ignore[no-untyped-call]
-            hit.bsdf(), hit, valid, positions, strength, sigma, base, shift, offset + sample, side * side, emitters, lambertian, rng
+            hit.bsdf(),
+            hit,
+            valid,
+            positions,
+            strength,
+            sigma,
+            base,
+            shift,
+            offset + sample,
+            side * side,
+            emitters,
+            lambertian,
+            rng,
         )
         to = dr.gather(mi.Point3f, positions, base + chosen) + shift
         lit = valid & (light > 0) & ~world.ray_test(hit.spawn_ray_to(to), valid & (light > 0))
@@ -84,14 +101,15 @@ def _shade(world: Any, scene: Scene, optics: Optics, pixels: Pixels, samples: in
         height += dr.select(valid, hit.p.z, 0.0)
         floor += dr.select(valid & (hit.p.z < FLOOR_MM / 2), 1.0, 0.0)
     dr.eval(radiance, height, floor)
-    return tuple(np.array(v / (side * side if v is not radiance else 1), dtype=np.float32) for v in (radiance, height, floor))
+    means = (radiance, height / (side * side), floor / (side * side))
+    return tuple(np.array(values, dtype=np.float32) for values in means)
 
 
 @dr.syntax
 def _gather_light(  # type: ignore[no-untyped-def]
     bsdf, hit, valid, positions, strength, sigma, base, shift, first, stride, emitters, lambertian, rng
 ):
-    """Sum over every `stride`-th emitter of BSDF times irradiance, and one emitter drawn in proportion to its part."""
+    """Sum BSDF times irradiance over every `stride`-th emitter, and draw one in proportion to its share."""
     total = mi.Float(0.0)
     chosen = mi.UInt32(0)
     k = mi.UInt32(first % stride)
@@ -111,9 +129,10 @@ def _gather_light(  # type: ignore[no-untyped-def]
 
 
 def _emitters(lights: tuple[Lights, ...]) -> tuple[Any, Any, Any, int, Any]:
-    """All tiles' emitters in one array each; tiles with fewer are filled up with dark ones."""
+    """Return all tiles' emitters in one array each; tiles with fewer are filled up with dark ones."""
     most = max(len(light.intensity) for light in lights)
-    position, strength, sigma = np.ones((len(lights), most, 3)), np.zeros((len(lights), most)), np.ones((len(lights), most))
+    position = np.ones((len(lights), most, 3))
+    strength, sigma = np.zeros((len(lights), most)), np.ones((len(lights), most))
     for i, light in enumerate(lights):
         n = len(light.intensity)
         position[i, :n], strength[i, :n] = light.positions_mm, light.intensity
@@ -125,21 +144,22 @@ def _emitters(lights: tuple[Lights, ...]) -> tuple[Any, Any, Any, int, Any]:
 
 
 def mitsuba_scene(scene: Scene) -> Any:
-    """Shapes and materials as a Mitsuba scene, without lights."""
-    parts = scene.parts
-    eta, k = METALS[parts[0].material]
+    """Return shapes and materials as a Mitsuba scene, without lights."""
+    finishes = [part.surface for part in scene.parts]
+    eta, k = METALS[finishes[0].material]
     floor = {"type": "diffuse", "reflectance": _bitmap(scene.floor)}
     materials = {
-        "bead": _metal(scene.bead, [p.alpha_weld for p in parts], eta, k),
-        "plate": _metal(scene.plate, [p.alpha_partner for p in parts], eta, k),
+        "bead": _metal(scene.bead, [finish.alpha_weld for finish in finishes], eta, k),
+        "plate": _metal(scene.plate, [finish.alpha_partner for finish in finishes], eta, k),
         "floor": mi.load_dict(floor),
         "fibre": mi.load_dict({"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.12}}),
     }
-    return mi.load_dict({"type": "scene", **{name: _shape(name, mesh, materials[name]) for name, mesh in scene.meshes.items()}})
+    shapes = {name: _shape(name, mesh, materials[name]) for name, mesh in scene.meshes.items()}
+    return mi.load_dict({"type": "scene", **shapes})
 
 
-def _metal(surface: Surface, alpha: list[float], eta: float, k: float) -> Any:
-    """Rough conductor, Beckmann, under a blended share of soot."""
+def _metal(surface: SurfaceMaps, alpha: list[float], eta: float, k: float) -> Any:
+    """Return a rough conductor (Beckmann) under a blended fraction of soot."""
     metal = {
         "type": "roughconductor",
         "distribution": "beckmann",
@@ -155,7 +175,7 @@ def _metal(surface: Surface, alpha: list[float], eta: float, k: float) -> Any:
 
 
 def _row(values: list[float]) -> dict[str, Any]:
-    """One value per tile; a plain number if all are the same."""
+    """Return one value per tile; a plain number if all are the same."""
     if len(set(values)) == 1:
         return {"type": "uniform", "value": values[0]}
     return {**_bitmap(np.asarray([values], np.float32)), "filter_type": "nearest"}
@@ -169,7 +189,8 @@ def _bitmap(values: NDArray[np.float32]) -> dict[str, Any]:
 def _shape(name: str, mesh: Mesh, bsdf: Any) -> Any:
     properties = mi.Properties()
     properties["mesh_bsdf"] = bsdf
-    shape = mi.Mesh(name, len(mesh.vertices), len(mesh.faces), has_vertex_normals=True, has_vertex_texcoords=True, props=properties)
+    sizes = (len(mesh.vertices), len(mesh.faces))
+    shape = mi.Mesh(name, *sizes, has_vertex_normals=True, has_vertex_texcoords=True, props=properties)
     parameters = mi.traverse(shape)
     parameters["vertex_positions"] = mesh.vertices.ravel()
     parameters["vertex_normals"] = mesh.normals.ravel()

@@ -1,7 +1,11 @@
-"""A made surface measurement of a weld, since no real one is to be had: not by the method that it feeds.
+"""An artificial surface measurement of a weld, in place of a real one.
 
-Each laser pulse leaves a lens of melt that freezes over the lenses before it, as in a pulsed seam weld; what is seen of each is
-what the later ones leave uncovered. Partner step, tilt, noise and lost points are those of a white-light interferometer.
+It is made by another method than the generator's own.
+
+Each laser pulse leaves a lens of melt that freezes over the lenses before it, as in a pulsed seam weld; of
+each, only what the later ones leave uncovered can be seen. Partner step, tilt, noise and lost points are
+those of a white-light interferometer. `weldgate-synth artificial` writes the shipped file again, byte for
+byte.
 """
 
 import hashlib
@@ -15,18 +19,29 @@ from numpy.typing import NDArray
 from synth.part.streams import Stream, stream
 
 STEP_UM = 3.0
+"""Distance between two points of the map."""
 SIZE = 2000
+"""Points on each side of the map."""
 HEIGHT_STEP_UM = 0.05
+"""Resolution of the heights in the file."""
+INSTRUMENT = "<Serial>none</Serial><Version>1</Version>"
+PROBE = "<ProbingSystem><Type>Software</Type><Identification>synth.made</Identification>"
+"""Entries of the shipped file."""
 NOTE = (
-    "MADE, NOT MEASURED: an artificial surface (overlapping frozen melt pools, partner step, noise, lost points) "
-    "in place of a white-light interferometer measurement of a real weld"
+    "MADE, NOT MEASURED: an artificial surface (overlapping frozen melt pools, partner step, noise, "
+    "lost points) in place of a white-light interferometer measurement of a real weld"
 )
 
 Array = NDArray[np.float64]
 
 
-def make_weld(seed: int = 1) -> tuple[Array, NDArray[np.bool_]]:
-    """Heights (2000, 2000) in um, rows across the weld, and which of them are valid."""
+def write_artificial(path: Path, seed: int) -> None:
+    """Write the artificial measurement of a seed as x3p; the shipped one is that of seed 1."""
+    write_x3p(path, *make_weld(seed), step_um=STEP_UM, note=NOTE)
+
+
+def make_weld(seed: int) -> tuple[Array, NDArray[np.bool_]]:
+    """Return heights (2000, 2000) in um, rows across the weld, and which of them are valid."""
     rng = stream(seed, Stream.ARTIFICIAL_MEASUREMENT)
     x_mm = np.arange(SIZE) * STEP_UM / 1000
     y_mm = (np.arange(SIZE) - SIZE / 2) * STEP_UM / 1000
@@ -37,31 +52,44 @@ def make_weld(seed: int = 1) -> tuple[Array, NDArray[np.bool_]]:
     z[y_mm > 0] += 14.0
     end_mm = float(x_mm[-1]) + 2.0
     for at in np.arange(-1.5, end_mm, pitch_mm):
-        _pulse(
-            z, rng, x_mm, y_mm, float(at) + 0.006 * float(rng.normal()), half_mm * float(rng.normal(1, 0.012)), float(rng.normal(1, 0.12))
-        )
-    steep = np.hypot(*np.gradient(cv2.GaussianBlur(z, (0, 0), 2), STEP_UM))
-    lost = rng.random(z.shape) < 0.01 + 0.7 / (1.0 + np.exp(-(steep - 0.45) / 0.05))
+        place_mm = float(at) + 0.006 * float(rng.normal())
+        width_mm, steep = half_mm * float(rng.normal(1, 0.012)), float(rng.normal(1, 0.12))
+        _pulse(z, rng, x_mm=x_mm, y_mm=y_mm, at_mm=place_mm, half_mm=width_mm, steep=steep)
+    slope = np.hypot(*np.gradient(cv2.GaussianBlur(z, (0, 0), 2), STEP_UM))
+    lost = rng.random(z.shape) < 0.01 + 0.7 / (1.0 + np.exp(-(slope - 0.45) / 0.05))
     z += rng.normal(0, 0.12, z.shape)
     z += 0.8 * x_mm[None, :] - 1.3 * y_mm[:, None]
     return z, ~lost
 
 
-def _pulse(z: Array, rng: np.random.Generator, x_mm: Array, y_mm: Array, at_mm: float, half_mm: float, steep: float) -> None:
-    """One frozen pool, drawn over what lies before it: a rounded rear, a ridge where it froze first, a dip, a crown."""
+def _pulse(
+    z: Array,
+    rng: np.random.Generator,
+    *,
+    x_mm: Array,
+    y_mm: Array,
+    at_mm: float,
+    half_mm: float,
+    steep: float,
+) -> None:
+    """Draw one frozen pool over those before it: rounded rear, ridge where it froze first, dip, crown."""
     columns = np.flatnonzero((x_mm > at_mm - 0.01) & (x_mm < at_mm + 1.4))
     rows = np.flatnonzero(np.abs(y_mm - 0.005) < half_mm)
     if columns.size == 0:
         return
     y = y_mm[rows][:, None] + 0.006 * float(rng.normal())
     q = np.clip(1 - (y / half_mm) ** 2, 0, 1)
-    wave = sum(rng.normal() * np.sin(2 * np.pi * y / pitch + rng.uniform(0, 6.3)) for pitch in (0.6, 0.31, 0.17, 0.09))
+    wave = sum(
+        rng.normal() * np.sin(2 * np.pi * y / pitch + rng.uniform(0, 6.3))
+        for pitch in (0.6, 0.31, 0.17, 0.09)
+    )
     rear_mm = 0.36 * (1 - np.sqrt(q)) + 0.007 * wave
     behind = x_mm[columns][None, :] - at_mm - rear_mm
     inside = (behind >= 0) & (q > 0)
     along = np.clip(behind / 0.155, 0, 9)
     crown = 38.0 * q**0.8 * float(rng.normal(1, 0.012))
-    ridge = float(rng.normal(16.0, 2.0)) * np.exp(-along / 0.45) - 5.0 * np.exp(-(((along - 0.9) / 0.4) ** 2)) + 5.0 * along
+    ridge = float(rng.normal(16.0, 2.0)) * np.exp(-along / 0.45)
+    ridge = ridge - 5.0 * np.exp(-(((along - 0.9) / 0.4) ** 2)) + 5.0 * along
     step = 7.0 * (1 + np.tanh(y / 0.2))
     grain = 0.5 * rng.normal(size=(rows.size // 12 + 2, columns.size // 12 + 2))
     fine = cv2.resize(grain, (columns.size, rows.size), interpolation=cv2.INTER_CUBIC)
@@ -69,25 +97,27 @@ def _pulse(z: Array, rng: np.random.Generator, x_mm: Array, y_mm: Array, at_mm: 
     z[np.ix_(rows, columns)] = np.where(inside, crown + step + (ridge * steep + fine) * np.sqrt(q), block)
 
 
-def write_x3p(path: Path, height_um: Array, valid: NDArray[np.bool_], step_um: float, note: str) -> None:
+def write_x3p(path: Path, height_um: Array, valid: NDArray[np.bool_], *, step_um: float, note: str) -> None:
     """Write an x3p file (ISO 25178-72): int16 heights, a mask of valid points, the note as its comment."""
     counts = np.where(valid, np.clip(np.round(height_um / HEIGHT_STEP_UM), -32768, 32767), 0).astype("<i2")
     data, mask = counts.tobytes(), np.packbits(valid.ravel(), bitorder="little").tobytes()
     rows, columns = height_um.shape
+    data_md5, mask_md5 = (hashlib.md5(content).hexdigest().upper() for content in (data, mask))
+    step_m, height_m = f"{step_um * 1e-6:.9g}", f"{HEIGHT_STEP_UM * 1e-6:.9g}"
     record = f"""<?xml version="1.0" encoding="UTF-8"?>
 <p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
 <Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>
-<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_um * 1e-6:.9g}</Increment><Offset>0</Offset></CX>
-<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_um * 1e-6:.9g}</Increment><Offset>0</Offset></CY>
-<CZ><AxisType>A</AxisType><DataType>I</DataType><Increment>{HEIGHT_STEP_UM * 1e-6:.9g}</Increment><Offset>0</Offset></CZ>
+<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_m}</Increment><Offset>0</Offset></CX>
+<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_m}</Increment><Offset>0</Offset></CY>
+<CZ><AxisType>A</AxisType><DataType>I</DataType><Increment>{height_m}</Increment><Offset>0</Offset></CZ>
 </Axes></Record1>
 <Record2><Date>2026-11-22T00:00:00</Date><Creator>weldgate</Creator>
-<Instrument><Manufacturer>weldgate</Manufacturer><Model>made surface</Model><Serial>none</Serial><Version>1</Version></Instrument>
-<CalibrationDate>2026-11-22T00:00:00</CalibrationDate><ProbingSystem><Type>Software</Type><Identification>synth.measured.artificial</Identification>
+<Instrument><Manufacturer>weldgate</Manufacturer><Model>made surface</Model>{INSTRUMENT}</Instrument>
+<CalibrationDate>2026-11-22T00:00:00</CalibrationDate>{PROBE}
 </ProbingSystem><Comment>{note}</Comment></Record2>
 <Record3><MatrixDimension><SizeX>{columns}</SizeX><SizeY>{rows}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
-<DataLink><PointDataLink>bindata/data.bin</PointDataLink><MD5ChecksumPointData>{hashlib.md5(data).hexdigest().upper()}</MD5ChecksumPointData>
-<ValidPointsLink>bindata/valid.bin</ValidPointsLink><MD5ChecksumValidPoints>{hashlib.md5(mask).hexdigest().upper()}</MD5ChecksumValidPoints>
+<DataLink><PointDataLink>bindata/data.bin</PointDataLink><MD5ChecksumPointData>{data_md5}</MD5ChecksumPointData>
+<ValidPointsLink>bindata/valid.bin</ValidPointsLink><MD5ChecksumValidPoints>{mask_md5}</MD5ChecksumValidPoints>
 </DataLink></Record3>
 <Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
 </p:ISO5436_2>

@@ -1,7 +1,8 @@
-"""A 3D surface measurement of one OK weld, read, levelled and laid straight; the only file that imports SurfaceTopography.
+"""A 3D surface measurement of one OK weld, read, levelled and laid straight.
 
-Read are x3p, opd, sur and what else SurfaceTopography knows, and npy (heights in um) with a stated step. Source: paper,
-section 3.3 (white-light interferometer, 6 x 6 mm, 3 um).
+The only file that imports SurfaceTopography. It reads x3p, opd, sur and the other formats of
+SurfaceTopography, and npy (heights in um) with a stated step. Source: paper, section 3.3 (white-light
+interferometer, 6 x 6 mm, 3 um).
 """
 
 import hashlib
@@ -17,19 +18,24 @@ from synth.errors import SynthError
 Array = NDArray[np.float64]
 
 SHIPPED = Path(__file__).parents[1] / "shipped" / "weld.x3p"
-"""A made measurement, in place of a real one: see its metadata."""
+"""An artificial measurement, in place of a real one: see its metadata and `synth.measured.artificial`."""
 STEP_UM = (0.1, 50.0)
+"""Steps that are accepted."""
 SIZE_MM = (0.5, 50.0)
+"""Sides of a map that are accepted."""
 RANGE_UM = (0.05, 5000.0)
+"""Height ranges that are accepted."""
 MIN_VALID = 0.3
+"""Smallest accepted fraction of points with a height."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measurement:
     """Heights of a weld that runs along the columns.
 
-    height_um (rows, columns) float64, rows = y across the weld, columns = x along it, levelled, lost points filled;
-    `lost` is the share of points that the file lacks, `turned_deg` by how much the map was turned to lay the weld along x.
+    height_um (rows, columns) float64, rows = y across the weld, columns = x along it, levelled, lost points
+    filled; `lost` is the fraction of points without a height in the file, `turned_deg` the angle by which the
+    map was turned.
     """
 
     height_um: Array
@@ -40,29 +46,31 @@ class Measurement:
 
 
 def read_measurement(path: Path, step_um: float | None = None) -> Measurement:
-    """Read, level, fill and turn a measurement. `step_um` is needed for npy, and refused otherwise.
+    """Read, level, fill and turn a measurement. `step_um` is needed for npy, and refused for other files.
 
-    Raises SynthError naming the value that is wrong and what is allowed.
+    Raises SynthError naming the wrong value and what is allowed.
     """
     raw_um, step = _read(path, step_um)
     valid = np.isfinite(raw_um)
-    share = float(valid.mean()) if raw_um.size else 0.0
-    if share < MIN_VALID:
-        raise SynthError(f"{path}: {share:.0%} of the points carry a height; at least {MIN_VALID:.0%} are needed")
+    fraction = float(valid.mean()) if raw_um.size else 0.0
+    if fraction < MIN_VALID:
+        raise SynthError(
+            f"{path}: {fraction:.0%} of the points carry a height; at least {MIN_VALID:.0%} are needed"
+        )
     if not STEP_UM[0] <= step <= STEP_UM[1]:
         raise SynthError(f"{path}: the step is {step:g} um; {STEP_UM[0]:g} to {STEP_UM[1]:g} um is allowed")
     size_mm = np.array(raw_um.shape) * step / 1000
     if size_mm.min() < SIZE_MM[0] or size_mm.max() > SIZE_MM[1]:
-        raise SynthError(
-            f"{path}: the map is {size_mm[1]:.3g} x {size_mm[0]:.3g} mm; {SIZE_MM[0]:g} to {SIZE_MM[1]:g} mm a side is allowed"
-        )
+        size = f"{size_mm[1]:.3g} x {size_mm[0]:.3g} mm"
+        raise SynthError(f"{path}: the map is {size}; {SIZE_MM[0]:g} to {SIZE_MM[1]:g} mm a side is allowed")
     height_um = _fill(_level(raw_um, valid), valid)
     span = float(np.ptp(np.percentile(height_um[valid], [1, 99])))
     if not RANGE_UM[0] <= span <= RANGE_UM[1]:
-        raise SynthError(f"{path}: heights span {span:.3g} um; {RANGE_UM[0]:g} to {RANGE_UM[1]:g} um is allowed (is the unit right?)")
+        allowed = f"{RANGE_UM[0]:g} to {RANGE_UM[1]:g} um is allowed"
+        raise SynthError(f"{path}: heights span {span:.3g} um; {allowed} (is the unit right?)")
     angle = weld_direction_deg(height_um)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    return Measurement(_turn(height_um, angle), step, 1.0 - share, angle, digest)
+    return Measurement(_turn(height_um, angle), step, 1.0 - fraction, angle, digest)
 
 
 def _read(path: Path, step_um: float | None) -> tuple[Array, float]:
@@ -78,7 +86,8 @@ def _read(path: Path, step_um: float | None) -> tuple[Array, float]:
         except (ValueError, EOFError, OSError) as error:
             raise SynthError(f"{path}: not a readable npy file: {error}") from None
         if heights.ndim != 2 or heights.dtype.kind not in "fiu":
-            raise SynthError(f"{path}: holds {heights.dtype} of shape {heights.shape}; a map of numbers (rows, columns) is needed")
+            held = f"{heights.dtype} of shape {heights.shape}"
+            raise SynthError(f"{path}: holds {held}; a map of numbers (rows, columns) is needed")
         return np.asarray(heights, np.float64), step_um
     if step_um is not None:
         raise SynthError(f"{path}: the file states its own step; leave out --step-um")
@@ -97,12 +106,14 @@ def _read_with_library(path: Path) -> tuple[Array, float]:
         raise SynthError(f"{path}: not a readable surface measurement: {reason}") from None
     if abs(step_x / step_y - 1) > 0.01:
         rows = round(heights.shape[0] * step_y / step_x)
-        heights = np.asarray(cv2.resize(heights, (heights.shape[1], rows), interpolation=cv2.INTER_LINEAR), np.float64)
+        heights = np.asarray(
+            cv2.resize(heights, (heights.shape[1], rows), interpolation=cv2.INTER_LINEAR), np.float64
+        )
     return heights, float(step_x)
 
 
 def _level(height_um: Array, valid: NDArray[np.bool_]) -> Array:
-    """Take off the best plane, refitted once without the points far from it."""
+    """Subtract the best plane, fitted a second time without the points far from it."""
     y, x = (np.asarray(axis, np.float64) for axis in np.indices(height_um.shape))
     keep = valid
     residual: Array = height_um
@@ -116,7 +127,7 @@ def _level(height_um: Array, valid: NDArray[np.bool_]) -> Array:
 
 
 def _fill(height_um: Array, valid: NDArray[np.bool_]) -> Array:
-    """Lost points from their neighbours: averages over ever wider windows, the narrowest that knows a height."""
+    """Fill lost points from their neighbours: the mean over the narrowest window that holds a height."""
     filled = np.where(valid, height_um, 0.0)
     known = valid.astype(np.float64)
     result, missing = filled.copy(), ~valid
@@ -132,11 +143,12 @@ def _fill(height_um: Array, valid: NDArray[np.bool_]) -> Array:
 
 
 def weld_direction_deg(height_um: Array) -> float:
-    """Angle from the columns' axis to the weld, -90 to 90 degrees, towards growing rows.
+    """Return the angle from the columns' axis to the weld, -90 to 90 degrees, towards growing rows.
 
     The weld is a band: smoothed along its own direction, the map's local roughness varies most across it.
     """
-    small = cv2.resize(height_um, (256, max(32, round(256 * height_um.shape[0] / height_um.shape[1]))), interpolation=cv2.INTER_AREA)
+    rows = max(32, round(256 * height_um.shape[0] / height_um.shape[1]))
+    small = cv2.resize(height_um, (256, rows), interpolation=cv2.INTER_AREA)
     rough = np.abs(small - cv2.GaussianBlur(small, (0, 0), 6))
     rough = np.minimum(rough, np.percentile(rough, 98))
     side = min(small.shape)
@@ -151,7 +163,7 @@ def weld_direction_deg(height_um: Array) -> float:
 
 
 def _turn(height_um: Array, angle_deg: float) -> Array:
-    """The map turned so that what runs at `angle_deg` runs along the columns; the largest rectangle without invented corners."""
+    """Turn the map so that what runs at `angle_deg` runs along x; keep a square without empty corners."""
     if abs(angle_deg) < 0.75:
         return height_um
     rows, columns = height_um.shape
@@ -162,4 +174,7 @@ def _turn(height_um: Array, angle_deg: float) -> Array:
     side = int(scale)
     matrix = cv2.getRotationMatrix2D(((columns - 1) / 2, (rows - 1) / 2), angle_deg, 1.0)
     matrix[:, 2] += (side - columns) / 2, (side - rows) / 2
-    return np.asarray(cv2.warpAffine(height_um, matrix, (side, side), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT))
+    turned = cv2.warpAffine(
+        height_um, matrix, (side, side), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT
+    )
+    return np.asarray(turned)

@@ -1,12 +1,12 @@
-"""Datasets of labelled crops on disk, made by many workers, resumable.
+"""Datasets of labelled crops on disk, made by many workers; a killed run continues where it stopped.
 
-DIR/manifest.json                    recipe, switches, seed, hashes: what is needed to make it again
-DIR/images/{train,val}/{ok,hole,missing_weld}/NNNNNN.png    class folders (ultralytics classify, anomalib Folder)
-DIR/labels/…/NNNNNN.txt              detection labels beside them (ultralytics detect, with DIR/data.yaml)
-DIR/masks/…/NNNNNN.png               255 where a defect is (anomalib)
-DIR/heights/…/NNNNNN.tif             on request: float32, um
-DIR/coco_train.json, coco_val.json   boxes and polygons (COCO)
-DIR/shards/NNNNN.json                one per finished shard: written last, so that a killed run goes on with the next
+manifest.json                         recipe, switches, seed, hashes: what is needed to make it again
+images/{train,val}/KIND/NNNNNN.png    folders of "ok", "hole", … (ultralytics classify, anomalib Folder)
+labels/…/NNNNNN.txt                   detection labels next to them (ultralytics detect, with data.yaml)
+masks/…/NNNNNN.png                    255 where a defect is (anomalib)
+heights/…/NNNNNN.tif                  on request: float32, um
+coco_train.json, coco_val.json        boxes and polygons (COCO)
+shards/NNNNN.json                     one per finished shard, written last: these are not made again
 """
 
 import json
@@ -17,47 +17,50 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from synth.camera.picture import CROP_PX
+from synth.camera.frames import CROP_PX
 from synth.errors import SynthError
 from synth.measured.spectrum import WeldModel
-from synth.output.plan import KINDS, Shard, plan_arcs, plan_flat, quotas
+from synth.output.plan import CROP_KINDS, Shard, crop_fractions, plan_pieces, plan_rings, quotas
 from synth.output.shard import DETECTED, Job, Made, make
 from synth.output.storage import claim, write_bytes, write_text
 from synth.part.recipe import Recipe
 from synth.part.switches import Switch
 
 FORMAT = 1
-SHARES = (0.5, 0.25, 0.25)
+"""Version of the layout of a dataset."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Order:
-    """What is to be made."""
+    """What a dataset is to hold."""
 
     seed: int
     count: int
     recipe: Recipe
     switches: frozenset[Switch]
-    flat: bool = False
-    heights: bool = False
-    shares: tuple[float, float, float] = SHARES
+    is_straight: bool = False
+    """True for the paper's straight pieces, False for crops of rings as the station cuts them."""
+    has_heights: bool = False
+    """True if height maps are written as well."""
 
 
-def write_dataset(out: Path, order: Order, model: WeldModel, executor: Executor | None, done: Callable[[int], None]) -> None:
-    """Make a dataset, or what is missing of it. `done` is called with the number of images of each finished shard.
+def write_dataset(
+    out: Path, order: Order, model: WeldModel, executor: Executor | None, done: Callable[[int], None]
+) -> None:
+    """Make a dataset, or what is missing of it. `done` is called with the number of images of each shard.
 
-    Without an executor all is done in this process. Raises SynthError if `out` holds another dataset, a file cannot be written or a
-    worker dies; what is finished stays and is not made again.
+    Without an executor all work is done in this process. Raises SynthError if `out` holds another dataset, a
+    file cannot be written or a worker dies; what is finished stays and is not made again.
     """
     from synth.camera.render import start
 
     variant = start()
-    wanted = quotas(order.count, order.shares)
-    shards = (plan_flat if order.flat else plan_arcs)(order.seed, wanted, order.recipe, order.switches)
+    plan = plan_pieces if order.is_straight else plan_rings
+    shards = plan(order.seed, quotas(order.count), order.recipe, order.switches)
     manifest = _manifest(order, model, variant)
     claim(out / "order.json", manifest)
     left = []
@@ -65,7 +68,7 @@ def write_dataset(out: Path, order: Order, model: WeldModel, executor: Executor 
         if _shard_file(out, shard.index).exists():
             done(len(shard.crops))
         else:
-            left.append(Job(shard, model, order.heights))
+            left.append(Job(shard, model, order.has_heights))
     for made in _all(left, executor):
         for name, content in made.files.items():
             write_bytes(out / name, content)
@@ -83,7 +86,8 @@ def _all(jobs: list[Job], executor: Executor | None) -> Iterator[Made]:
         for future in as_completed(waiting):
             yield future.result()
     except BrokenProcessPool:
-        raise SynthError("a worker was killed (out of memory?); run the command again to go on, with fewer --workers if need be") from None
+        advice = "run the command again to continue, with fewer --workers if need be"
+        raise SynthError(f"a worker was killed (out of memory?); {advice}") from None
     finally:
         for future in waiting:
             future.cancel()
@@ -91,9 +95,10 @@ def _all(jobs: list[Job], executor: Executor | None) -> Iterator[Made]:
 
 @contextmanager
 def workers(count: int) -> Iterator[Executor]:
-    """Processes that share the machine's cores."""
+    """Start processes that share the machine's cores."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    with ProcessPoolExecutor(count, multiprocessing.get_context("spawn"), _begin, (max(1, cores // count),)) as pool:
+    threads = max(1, cores // count)
+    with ProcessPoolExecutor(count, multiprocessing.get_context("spawn"), _begin, (threads,)) as pool:
         yield pool
 
 
@@ -109,13 +114,17 @@ def _begin(threads: int) -> None:
 
 @contextmanager
 def cluster(address: str) -> Iterator[Executor]:
-    """Workers of a Dask cluster, best started with --nthreads 1. Raises SynthError if none answers."""
+    """Connect to the workers of a Dask cluster, best started with --nthreads 1.
+
+    Raises SynthError if none answers.
+    """
     from distributed import Client
 
     try:
         client: Any = Client(address, timeout="10s")  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
-        raise SynthError(f"--scheduler {address}: no Dask scheduler answers there: {str(error).splitlines()[0]}") from None
+        reason = str(error).splitlines()[0]
+        raise SynthError(f"--scheduler {address}: no Dask scheduler answers there: {reason}") from None
     with client, client.get_executor(pure=False) as executor:
         yield executor
 
@@ -129,30 +138,32 @@ def _manifest(order: Order, model: WeldModel, variant: str) -> dict[str, Any]:
         "format": FORMAT,
         "seed": order.seed,
         "count": order.count,
-        "shares": dict(zip(KINDS, order.shares, strict=True)),
-        "crops": "flat" if order.flat else "arcs",
-        "heights": order.heights,
+        "shares": crop_fractions(),
+        "crops": "flat" if order.is_straight else "arcs",
+        "heights": order.has_heights,
         "switches": sorted(order.switches),
-        "recipe": asdict(order.recipe),
+        "recipe": order.recipe.tables(),
         "measurement_sha256": model.sha256,
         "renderer": variant,
     }
 
 
 def _finish(out: Path, shards: list[Shard], manifest: dict[str, Any]) -> None:
+    """Write what describes the whole dataset, once all shards are made."""
     images = [entry for shard in shards for entry in json.loads(_shard_file(out, shard.index).read_text())]
     images.sort(key=lambda entry: str(entry["file"])[-10:])
     for split in ("train", "val"):
-        write_text(out / f"coco_{split}.json", json.dumps(_coco([e for e in images if f"images/{split}/" in e["file"]])))
-        for kind in KINDS:
+        entries = [entry for entry in images if f"images/{split}/" in entry["file"]]
+        write_text(out / f"coco_{split}.json", json.dumps(_coco(entries)))
+        for kind in CROP_KINDS:
             (out / "images" / split / kind).mkdir(parents=True, exist_ok=True)
-    names = "".join(f"  {i}: {name}\n" for i, name in enumerate(DETECTED))
+    names = "".join(f"  {number}: {name}\n" for number, name in enumerate(DETECTED))
     write_text(out / "data.yaml", f"path: .\ntrain: images/train\nval: images/val\nnames:\n{names}")
     write_text(out / "manifest.json", json.dumps({**manifest, "images": images}, indent=1))
 
 
 def _coco(entries: list[dict[str, Any]]) -> dict[str, Any]:
-    """Annotations as COCO's tools read them; categories are numbered from 1."""
+    """Return the annotations as COCO's tools read them; categories are numbered from 1."""
     images: list[dict[str, Any]] = []
     annotations: list[dict[str, Any]] = []
     for number, entry in enumerate(entries, 1):
@@ -170,4 +181,9 @@ def _coco(entries: list[dict[str, Any]]) -> dict[str, Any]:
                 }
             )
     categories = [{"id": i, "name": name, "supercategory": "defect"} for i, name in enumerate(DETECTED, 1)]
-    return {"info": {"description": "rendered welds"}, "images": images, "annotations": annotations, "categories": categories}
+    return {
+        "info": {"description": "rendered welds"},
+        "images": images,
+        "annotations": annotations,
+        "categories": categories,
+    }

@@ -1,4 +1,4 @@
-"""Figures of what was measured and calibrated (paper, Figs. 4, 5 and 7); the only file that imports matplotlib."""
+"""Figures of a measurement and of a calibration (paper, Figs. 4, 5, 7); only this file imports matplotlib."""
 
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from synth.part.streams import Stream, stream
 
 
 def measurement_figure(measurement: Measurement, model: WeldModel, out: Path) -> None:
-    """What was read and what was derived: map, row shift, profile; and a new surface in three steps."""
+    """Draw what was read and what was derived: map, row shift, profile; and a new surface in three steps."""
     figure = Figure(figsize=(13, 10), layout="constrained")
     axes = figure.subplot_mosaic([["map", "shift", "profile"], ["a", "b", "c"]], height_ratios=[1.5, 1])
     z, step = measurement.height_um, measurement.step_um / 1000
@@ -30,11 +30,14 @@ def measurement_figure(measurement: Measurement, model: WeldModel, out: Path) ->
     y = np.asarray((np.arange(model.shape[0]) - (model.shape[0] - 1) / 2) * step, np.float64)
     fitted = model.shift(y)
     axes["shift"].plot(y, model.phase_shift, label="measured")
-    axes["shift"].plot(y, fitted - fitted.mean() + model.phase_shift.mean(), label=f"Gaussian, sigma {model.shift.sigma_mm:.2f} mm")
-    _title(axes["shift"], f"shift of the rows at the dominant pitch, {model.dominant_pitch_mm * 1000:.0f} um", "y in mm", "shift in mm")
+    level = model.phase_shift.mean() - fitted.mean()
+    axes["shift"].plot(y, fitted + level, label=f"Gaussian, sigma {model.shift.sigma_mm:.2f} mm")
+    pitch = f"shift of the rows at the dominant pitch, {model.dominant_pitch_mm * 1000:.0f} um"
+    _title(axes["shift"], pitch, "y in mm", "shift in mm")
     axes["profile"].plot(y, model.profile_um, label="measured")
     fitted = model.edge(y) * 1000
-    axes["profile"].plot(y, fitted - fitted.mean() + model.profile_um.mean(), label=f"Gaussian, sigma {model.edge.sigma_mm:.2f} mm")
+    level = model.profile_um.mean() - fitted.mean()
+    axes["profile"].plot(y, fitted + level, label=f"Gaussian, sigma {model.edge.sigma_mm:.2f} mm")
     _title(axes["profile"], "mean height over x", "y in mm", "height in um")
     for name in ("shift", "profile"):
         axes[name].legend()
@@ -44,17 +47,18 @@ def measurement_figure(measurement: Measurement, model: WeldModel, out: Path) ->
     bent = shift_rows(surface, model.shift(y) / step)
     weight = np.exp(-0.5 * ((y - model.edge.center_mm) / model.edge.sigma_mm) ** 2)[:, None]
     columns = min(surface.shape[1], 2 * surface.shape[0])
-    steps = {"a": (surface, "new surface, eq. (2)"), "b": (bent, "rows shifted"), "c": (bent * weight, "edges reduced")}
+    made = f"new surface, eq. (2), {len(model.lines)} kept frequencies"
+    steps = {"a": (surface, made), "b": (bent, "rows shifted"), "c": (bent * weight, "edges reduced")}
     limit = float(np.abs(surface).max())
     for name, (values, title) in steps.items():
         extent = (0.0, columns * step, float(y[-1]), float(y[0]))
         axes[name].imshow(values[:, :columns], extent=extent, vmin=-limit, vmax=limit, cmap="viridis")
-        _title(axes[name], f"{title}, {len(model.lines)} kept frequencies" if name == "a" else title, "x in mm", "y in mm")
+        _title(axes[name], title, "x in mm", "y in mm")
     _save(figure, out)
 
 
 def calibration_figure(calibration: Calibration, out: Path) -> None:
-    """Chi-square distance over alpha, the minima marked."""
+    """Draw the chi-square distance over alpha, with the minima marked."""
     figure = Figure(figsize=(8, 5), layout="constrained")
     axes = figure.subplots()
     for name, values, best in (

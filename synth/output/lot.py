@@ -1,25 +1,25 @@
-"""Folders of rendered parts: images, exact labels and what is needed to make them again.
+"""Lots: folders of rendered parts with exact labels and what is needed to make them again.
 
-A lot is `frames/part_NNNNNN.png` plus `labels.json`; each part's label is first written beside its image, so that a
-killed run goes on where it stopped, without a lost or doubled part.
+A lot is `frames/part_NNNNNN.png` plus `labels.json`. Each part's label is first written next to its image, so
+that a killed run continues where it stopped, without a lost or doubled part.
 """
 
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from station.domain import STRIP_COLUMNS, STRIP_ROWS, Ring
 from station.vision.unwrap import unwrap
+from synth.camera.frames import Image, Window, frame_window, ring_window
 from synth.camera.optics import Optics
-from synth.camera.picture import Image, Window, picture, ring_window
 from synth.camera.projection import ring_px
 from synth.measured.spectrum import WeldModel
 from synth.output.labels import label, mask, outlines, strip_mask
 from synth.output.storage import claim, write_image, write_text
-from synth.part.part import Part, Truth, draw_part
+from synth.part.part import Part, draw_part
 from synth.part.recipe import Recipe
 from synth.part.streams import Stream, stream
 from synth.part.switches import Switch
@@ -30,29 +30,31 @@ CONVENTION = (
 )
 
 
-def plan(seed: int, count: int, shares: dict[Truth, float]) -> Iterator[tuple[int, Truth]]:
-    """Seeds and truths of a lot: the shares hold in any long stretch, in an order drawn from `seed`."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LotOrder:
+    """What a lot is to hold."""
+
+    seed: int
+    count: int
+    recipe: Recipe
+    switches: frozenset[Switch]
+    is_whole: bool = True
+    """True for whole frames, False for windows round the ring."""
+    has_strips: bool = False
+    """True if the unwrapped strips and the masks of frames and strips are written as well."""
+
+
+def plan(seed: int, count: int, recipe: Recipe) -> Iterator[tuple[int, str | None]]:
+    """Yield the seed and the kind of defect of each part: the recipe's weights hold in any long stretch."""
     rng = stream(seed, Stream.LOT)
-    truths = list(shares)
-    weights = np.array([shares[t] for t in truths])
+    kinds = [None, *recipe.defects]
+    weights = np.array([recipe.ok_weight, *(ranges.weight for ranges in recipe.defects.values())])
     for index in range(count):
-        yield seed * 1_000_000 + index, truths[int(rng.choice(len(truths), p=weights / weights.sum()))]
+        yield seed * 1_000_000 + index, kinds[int(rng.choice(len(kinds), p=weights / weights.sum()))]
 
 
-def write_lot(
-    out: Path,
-    seed: int,
-    count: int,
-    shares: dict[Truth, float],
-    recipe: Recipe,
-    switches: frozenset[Switch],
-    model: WeldModel,
-    whole: bool,
-    strips: bool,
-    done: Callable[[], None],
-) -> None:
-    """Render `count` parts into `out`; whole frames or windows round the ring; with `strips`, the unwrapped
-    strips and the masks of frames and strips as well. `done` is called after each part.
+def write_lot(out: Path, order: LotOrder, model: WeldModel, done: Callable[[], None]) -> None:
+    """Render a lot into `out`. `done` is called after each part.
 
     Raises SynthError if `out` holds a lot of another seed or recipe.
     """
@@ -61,39 +63,42 @@ def write_lot(
     frames.mkdir(parents=True, exist_ok=True)
     manifest = {
         "convention": CONVENTION,
-        "seed": seed,
-        "whole": whole,
-        "recipe": asdict(recipe),
-        "switches": sorted(switches),
+        "seed": order.seed,
+        "whole": order.is_whole,
+        "recipe": order.recipe.tables(),
+        "switches": sorted(order.switches),
         "measurement_sha256": model.sha256,
     }
     claim(out / "manifest.json", manifest)
     labels = []
-    for part_seed, truth in plan(seed, count, shares):
+    for part_seed, kind in plan(order.seed, order.count, order.recipe):
         name = f"part_{part_seed:08d}.png"
         side = frames / f"part_{part_seed:08d}.json"
         if not side.exists():
-            part = draw_part(part_seed, truth, recipe, switches)
-            window = (0, 0, optics.width_px, optics.height_px) if whole else ring_window(part, optics)
-            image = picture(part, model, optics, window)
-            if strips:
-                _write_strips(out, name, part, optics, image, window)
+            part = draw_part(part_seed, order.recipe, kind=kind, switches=order.switches)
+            window = (
+                (0, 0, optics.width_px, optics.height_px) if order.is_whole else ring_window(part, optics)
+            )
+            image = frame_window(part, model, optics, window)
+            if order.has_strips:
+                _write_strips(out, name, part=part, optics=optics, image=image, window=window)
             write_image(frames / name, image)
-            write_text(side, json.dumps(label(part, optics, name, window[:2], window[2:])))
+            written = label(part, optics, name=name, origin_px=window[:2], size_px=window[2:])
+            write_text(side, json.dumps(written))
         labels.append(json.loads(side.read_text()))
         done()
     write_text(out / "labels.json", json.dumps({**manifest, "frames": labels}, indent=1))
 
 
-def _write_strips(out: Path, name: str, part: Part, optics: Optics, image: Image, window: Window) -> None:
-    """strips/ as the station unwraps them from the true ring; masks/ and strip_masks/: 255 where a defect is."""
+def _write_strips(out: Path, name: str, *, part: Part, optics: Optics, image: Image, window: Window) -> None:
+    """Write the strip as the station unwraps it from the true ring, and masks, 255 where a defect is."""
     left, top, width, height = window
     x, y, radius = ring_px(part, optics)
     ring = Ring(x - left, y - top, radius, 1.0)
     in_frame, in_strip = np.zeros((height, width), bool), np.zeros((STRIP_ROWS, STRIP_COLUMNS), bool)
-    for opening in outlines(part, optics):
-        in_frame |= mask(opening.points - (left, top), width, height)
-        in_strip |= strip_mask(opening, ring, (left, top))
+    for outline in outlines(part, optics):
+        in_frame |= mask(outline.points - (left, top), width, height)
+        in_strip |= strip_mask(outline, ring, (left, top))
     write_image(out / "masks" / name, in_frame.astype(np.uint8) * 255)
     write_image(out / "strips" / name, unwrap(image, ring))
     write_image(out / "strip_masks" / name, in_strip.astype(np.uint8) * 255)

@@ -8,19 +8,22 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from station.domain import SEGMENT_PX, SEGMENTS, Ring
+from station.defects import KINDS
+from station.domain import SEGMENT_PX, STRIP_COLUMNS, STRIP_ROWS, Ring
 from station.vision.unwrap import segments, strip_to_frame, unwrap
+from synth.camera.frames import CROP_PX, band, piece_crops, piece_window
 from synth.camera.optics import Optics
-from synth.camera.picture import CROP_PX, band, flat_crops, flat_window
 from synth.camera.projection import ring_px
 from synth.measured.spectrum import WeldModel
 from synth.output.labels import Outline, mask, outlines, strip_mask
-from synth.output.plan import HOLE, MISSING, RING_ERROR_PX, Crop, Shard
+from synth.output.plan import RING_ERROR_PX, Crop, Shard
 from synth.output.storage import encode
 from synth.part.streams import Stream, stream
 
-DETECTED = (HOLE, MISSING)
-"""Classes of the detection labels, in order."""
+DETECTED = tuple(kind.name for kind in KINDS if kind.is_mapped)
+"""Kinds of defect that the detection labels, masks and polygons show, in the order of their numbers."""
+
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,94 +37,118 @@ class Job:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Made:
-    """Files of a shard by their path in the dataset, and what the manifest and the annotations say of each image."""
+    """Files of a shard by their path in the dataset, and the entry of each image in the manifest."""
 
     index: int
     files: dict[str, bytes]
     images: list[dict[str, Any]]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Shot:
+    """One rendered crop (128, 128) with its heights in mm and the mask of each defect that is in view."""
+
+    crop: Crop
+    image: NDArray[np.uint8]
+    height_mm: NDArray[np.float32]
+    defects: list[tuple[Outline, Mask]]
+
+
 def make(job: Job) -> Made:
     """Render a shard. Same job, same bytes, on any worker with the same variant of the renderer."""
     optics = Optics()
-    shots = _flat(job.shard, job.model, optics) if job.shard.is_straight else _arcs(job, optics)
+    shard = job.shard
+    shots = _pieces(shard, job.model, optics) if shard.is_straight else _ring(job, optics)
     files: dict[str, bytes] = {}
     entries = []
-    for crop, image, height_mm, defects in shots:
-        stem = f"{job.shard.split}/{crop.kind}/{crop.number:06d}"
-        png = encode(".png", image)
+    for shot in shots:
+        stem = f"{shard.split}/{shot.crop.kind}/{shot.crop.number:06d}"
+        png = encode(".png", shot.image)
         files[f"images/{stem}.png"] = png
-        boxes = [(DETECTED.index(o.kind), *_box(m)) for o, m in defects]
-        files[f"labels/{stem}.txt"] = "".join(_yolo_line(*box) for box in boxes).encode()
-        if defects:
-            together = np.any([m for _, m in defects], axis=0)
+        boxes = [(DETECTED.index(outline.kind), *_box(m)) for outline, m in shot.defects]
+        files[f"labels/{stem}.txt"] = "".join(_yolo_line(box[0], box[1:]) for box in boxes).encode()
+        if shot.defects:
+            together = np.any([m for _, m in shot.defects], axis=0)
             files[f"masks/{stem}.png"] = encode(".png", together.astype(np.uint8) * 255)
         if job.heights:
-            files[f"heights/{stem}.tif"] = encode(".tif", (height_mm * 1000).astype(np.float32))
+            files[f"heights/{stem}.tif"] = encode(".tif", (shot.height_mm * 1000).astype(np.float32))
         entries.append(
             {
                 "file": f"images/{stem}.png",
-                "kind": crop.kind,
-                "seed": job.shard.parts[crop.place if job.shard.is_straight else 0].seed,
-                "segment": None if job.shard.is_straight else crop.place,
+                "kind": shot.crop.kind,
+                "seed": shard.parts[shot.crop.place if shard.is_straight else 0].seed,
+                "segment": None if shard.is_straight else shot.crop.place,
                 "sha256": sha256(png).hexdigest(),
-                "defects": [{"kind": o.kind, "box_px": _box(m), "area_px": int(m.sum()), "polygon_px": _polygons(m)} for o, m in defects],
+                "defects": [_entry(outline.kind, m) for outline, m in shot.defects],
             }
         )
-    return Made(job.shard.index, files, entries)
+    return Made(shard.index, files, entries)
 
 
-Shot = tuple[Crop, NDArray[np.uint8], NDArray[np.float32], list[tuple[Outline, NDArray[np.bool_]]]]
-
-
-def _flat(shard: Shard, model: WeldModel, optics: Optics) -> list[Shot]:
-    images, heights, _ = flat_crops(shard.parts, model, optics)
-    left, top, width, height = flat_window(optics)
-    shots: list[Shot] = []
+def _pieces(shard: Shard, model: WeldModel, optics: Optics) -> list[_Shot]:
+    images, heights, _ = piece_crops(shard.parts, model, optics)
+    left, top, width, height = piece_window(optics)
+    shots = []
     for crop in shard.crops:
-        found = [(o, mask(o.points - (left, top), width, height)) for o in outlines(shard.parts[crop.place], optics)]
-        shots.append((crop, images[crop.place], heights[crop.place], [(o, m) for o, m in found if m.any()]))
+        seen = [
+            (o, mask(o.points - (left, top), width, height))
+            for o in outlines(shard.parts[crop.place], optics)
+        ]
+        shots.append(_Shot(crop, images[crop.place], heights[crop.place], _in_view(seen)))
     return shots
 
 
-def _arcs(job: Job, optics: Optics) -> list[Shot]:
-    """The ring's band, cut as the station cuts it, from a ring found with a small error."""
+def _ring(job: Job, optics: Optics) -> list[_Shot]:
+    """Render the ring's band and cut it as the station does, from a ring found with a small error."""
     part = job.shard.parts[0]
     image, height_mm, window = band(part, job.model, optics)
     x, y, radius = ring_px(part, optics)
-    dx, dy, dr = stream(part.seed, Stream.RING_ERROR).uniform(-RING_ERROR_PX, RING_ERROR_PX, 3)
-    ring = Ring(x - window[0] + float(dx), y - window[1] + float(dy), radius + float(dr), 1.0)
-    crops = segments(unwrap(image, ring))
-    heights = _unwrap_map(height_mm, ring) if job.heights else np.zeros((SEGMENT_PX, SEGMENTS * SEGMENT_PX), np.float32)
-    masks = [(o, strip_mask(o, ring, window[:2])) for o in outlines(part, optics)]
-    shots: list[Shot] = []
+    error = stream(part.seed, Stream.RING_ERROR).uniform(-RING_ERROR_PX, RING_ERROR_PX, 3)
+    ring = Ring(
+        x - window[0] + float(error[0]), y - window[1] + float(error[1]), radius + float(error[2]), 1.0
+    )
+    images = segments(unwrap(image, ring))
+    heights = (
+        _unwrap_map(height_mm, ring) if job.heights else np.zeros((STRIP_ROWS, STRIP_COLUMNS), np.float32)
+    )
+    masks = [(outline, strip_mask(outline, ring, window[:2])) for outline in outlines(part, optics)]
+    shots = []
     for crop in job.shard.crops:
         columns = slice(crop.place * SEGMENT_PX, (crop.place + 1) * SEGMENT_PX)
-        found = [(o, m[:, columns]) for o, m in masks if m[:, columns].any()]
-        shots.append((crop, crops[crop.place], heights[:, columns], found))
+        seen = [(outline, m[:, columns]) for outline, m in masks]
+        shots.append(_Shot(crop, images[crop.place], heights[:, columns], _in_view(seen)))
     return shots
 
 
+def _in_view(masks: list[tuple[Outline, Mask]]) -> list[tuple[Outline, Mask]]:
+    """Return the masks that detection labels show."""
+    return [(outline, m) for outline, m in masks if outline.kind in DETECTED and m.any()]
+
+
 def _unwrap_map(values: NDArray[np.float32], ring: Ring) -> NDArray[np.float32]:
-    """Strip (128, 2688) of a map of floats, by the station's formula."""
-    column, row = np.meshgrid(np.arange(SEGMENTS * SEGMENT_PX), np.arange(SEGMENT_PX))
+    """Return the strip (128, 2688) of a map of floats, by the station's formula."""
+    column, row = np.meshgrid(np.arange(STRIP_COLUMNS), np.arange(STRIP_ROWS))
     at = strip_to_frame(ring, np.stack([column.ravel(), row.ravel()], axis=1)).astype(np.float32)
     x, y = at[:, 0].reshape(column.shape), at[:, 1].reshape(column.shape)
     return np.asarray(cv2.remap(values, x, y, cv2.INTER_LINEAR), np.float32)
 
 
-def _box(m: NDArray[np.bool_]) -> tuple[int, int, int, int]:
-    """Left, top, width, height in px."""
+def _entry(kind: str, m: Mask) -> dict[str, Any]:
+    return {"kind": kind, "box_px": _box(m), "area_px": int(m.sum()), "polygon_px": _polygons(m)}
+
+
+def _box(m: Mask) -> tuple[int, int, int, int]:
+    """Return left, top, width, height in px."""
     left, top, width, height = cv2.boundingRect(m.astype(np.uint8))
     return left, top, width, height
 
 
-def _yolo_line(label: int, left: int, top: int, width: int, height: int) -> str:
-    middle = (left + width / 2) / CROP_PX, (top + height / 2) / CROP_PX
-    return f"{label} {middle[0]:.6f} {middle[1]:.6f} {width / CROP_PX:.6f} {height / CROP_PX:.6f}\n"
+def _yolo_line(number: int, box_px: tuple[int, int, int, int]) -> str:
+    left, top, width, height = (value / CROP_PX for value in box_px)
+    return f"{number} {left + width / 2:.6f} {top + height / 2:.6f} {width:.6f} {height:.6f}\n"
 
 
-def _polygons(m: NDArray[np.bool_]) -> list[list[int]]:
-    """Outer borders as COCO wants them: x1, y1, x2, y2 …"""
+def _polygons(m: Mask) -> list[list[int]]:
+    """Return the outer borders as COCO states them: x1, y1, x2, y2 …"""
     borders, _ = cv2.findContours(m.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     return [[int(v) for v in border.ravel()] for border in borders if len(border) >= 3]

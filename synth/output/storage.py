@@ -1,4 +1,4 @@
-"""Files of datasets: whole or absent, with the errors of this room."""
+"""Files that are whole or absent: written under another name, then renamed."""
 
 import json
 from pathlib import Path
@@ -11,7 +11,7 @@ from synth.errors import SynthError
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Write a file. Raises SynthError saying why it could not be."""
+    """Write a file. Raises SynthError with the reason if it cannot be written."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, content)
@@ -30,7 +30,7 @@ def write_image(path: Path, image: NDArray) -> None:  # type: ignore[type-arg]
 
 
 def encode(suffix: str, image: NDArray) -> bytes:  # type: ignore[type-arg]
-    """Bytes of an image file."""
+    """Return the bytes of an image file."""
     good, content = cv2.imencode(suffix, image, [cv2.IMWRITE_PNG_COMPRESSION, 3] if suffix == ".png" else [])
     if not good:
         raise SynthError(f"an image of shape {image.shape} could not be encoded as {suffix}")
@@ -38,15 +38,16 @@ def encode(suffix: str, image: NDArray) -> bytes:  # type: ignore[type-arg]
 
 
 def claim(path: Path, manifest: dict[str, object]) -> None:
-    """Write what a folder holds, or check that it holds the same. Raises SynthError if it does not."""
-    wanted = json.loads(json.dumps(manifest))
+    """Write what a folder is to hold, or check that it holds the same. Raises SynthError if it does not."""
+    expected = json.loads(json.dumps(manifest))
     if not path.exists():
-        write_text(path, json.dumps(wanted, indent=1))
+        write_text(path, json.dumps(expected, indent=1))
         return
     try:
         held = json.loads(path.read_text())
     except (OSError, ValueError):
         raise SynthError(f"{path}: not readable; name an empty folder with --out") from None
-    differing = sorted(key for key in wanted if held.get(key) != wanted[key])
+    differing = sorted(key for key in expected if held.get(key) != expected[key])
     if differing:
-        raise SynthError(f"{path.parent}: was begun with another {', '.join(differing)}; name an empty folder with --out")
+        names = ", ".join(differing)
+        raise SynthError(f"{path.parent}: was begun with another {names}; name an empty folder with --out")

@@ -1,7 +1,7 @@
 """The two forms of a weld: a whole ring, or the paper's straight piece of one. numpy only, mm.
 
-Both are described by an angle along the weld and a radius across it. They differ in where these lie on the part, whether the
-weld closes, and how much of the part is there.
+Both are described by an angle along the weld and a radius across it. They differ in where these lie on the
+part, whether the weld closes, and how much of the part is there.
 """
 
 from abc import ABC, abstractmethod
@@ -49,6 +49,13 @@ class Geometry(ABC):
         """Angle after which the weld repeats, if it closes."""
         return 2 * np.pi if self.is_closed else None
 
+    def clipped(self, start_rad: float, end_rad: float) -> tuple[float, float]:
+        """Return the part of an arc that the weld has; the end lies before the start if it has none."""
+        if self.is_closed:
+            return start_rad, end_rad
+        first, last = self.ends_rad
+        return max(start_rad, first), min(end_rad, last)
+
     @abstractmethod
     def angles(self) -> Array:
         """Return the angles (M,) of the bead's grid, rad."""
@@ -71,7 +78,7 @@ class Geometry(ABC):
 
     @abstractmethod
     def number(self, rng: np.random.Generator, on_ring: int, piece_fraction: float) -> int:
-        """Return how many of the `on_ring` things on a ring's part lie here; a piece has `piece_fraction` of them."""
+        """Return how many of the `on_ring` things of a ring are here; a piece has that fraction of them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,12 +36,22 @@ class Stream(IntEnum):
     ARTIFICIAL_MEASUREMENT = 20
     FIGURE = 21
     """Example surface in the figure of a measurement."""
-    STRAIGHT_PLAN = 30
+    PIECE_PLAN = 30
     """Order of the kinds of defect in a dataset of straight pieces."""
-    STRAIGHT_PIECE = 31
+    PIECE_SEAM = 31
     """Place of the weld's ends on a straight piece."""
     RING_PLAN = 32
     """Which segments of a ring a dataset uses."""
+    POSE = 40
+    BEAD = 41
+    JOINT = 42
+    RELIEF = 43
+    SURFACE = 44
+    DIRT = 45
+    LIGHT = 46
+    SENSOR = 47
+    DEFECTS = 48
+    """Defects; each kind has its own stream by its name."""
 
 
 def stream(seed: int, name: Stream, *more: int | str) -> np.random.Generator:

@@ -7,7 +7,7 @@ from synth.errors import SynthError
 
 
 class Switch(StrEnum):
-    """What a rendered weld may have; the four geometric ones first."""
+    """Feature of a rendered weld; the four geometric ones first."""
 
     TOPOGRAPHY = "topography"
     """Ripples of the weld (eqs. 1 and 2); off: a flat bead."""
@@ -28,10 +28,11 @@ class Switch(StrEnum):
 
 
 ALL = frozenset(Switch)
+"""All switches on."""
 
 
 def without(names: Iterable[str]) -> frozenset[Switch]:
-    """All switches but the named ones. Raises SynthError naming an unknown one."""
+    """Return all switches except the named ones. Raises SynthError naming an unknown one."""
     off = set()
     for name in names:
         try:

@@ -1,6 +1,7 @@
 """Random fields and curves, periodic, from a given generator; numpy only.
 
-No library is used for Perlin noise: those at hand draw from numpy's global state, and a part must grow from its seed alone.
+No library is used for Perlin noise: the available ones draw from numpy's global state, and a part must grow
+from its seed alone.
 """
 
 import numpy as np
@@ -10,9 +11,10 @@ Array = NDArray[np.float64]
 
 
 def harmonics(rng: np.random.Generator, theta_rad: Array, low: int, high: int) -> Array:
-    """Sum of sine waves of normal amplitude and random phase (paper, eq. 4), scaled to standard deviation 1 over a full turn.
+    """Return a sum of sine waves of normal amplitude and random phase (paper, eq. 4).
 
-    Harmonics start at `low`: from 2 on, the best circle through the curve stays where it is.
+    Its standard deviation over a turn is 1. Harmonics start at `low`: from 2 on, the best circle through the
+    curve stays where it is.
     """
     k = np.arange(low, high + 1)[:, None]
     amplitude = rng.normal(size=k.shape) / np.sqrt(k)
@@ -22,7 +24,10 @@ def harmonics(rng: np.random.Generator, theta_rad: Array, low: int, high: int) -
 
 
 def gaussian(rng: np.random.Generator, shape: tuple[int, int], cells: tuple[float, float]) -> Array:
-    """Band-limited Gaussian noise, periodic along both axes, standard deviation 1; `cells` is its grain in grid cells."""
+    """Return band-limited Gaussian noise, periodic along both axes, of standard deviation 1.
+
+    `cells` is its grain in grid cells.
+    """
     f0 = np.fft.fftfreq(shape[0])[:, None] * cells[0]
     f1 = np.fft.rfftfreq(shape[1])[None, :] * cells[1]
     spectrum = np.fft.rfft2(rng.normal(size=shape)) * np.exp(-2.0 * (f0**2 + f1**2))
@@ -31,9 +36,10 @@ def gaussian(rng: np.random.Generator, shape: tuple[int, int], cells: tuple[floa
 
 
 def perlin(rng: np.random.Generator, shape: tuple[int, int], nodes: tuple[int, int]) -> Array:
-    """Perlin gradient noise, periodic along both axes, about -1 to 1; `nodes` gradients lie along each axis.
+    """Return Perlin gradient noise, periodic along both axes, about -1 to 1.
 
-    Source: K. Perlin, "Improving noise", SIGGRAPH 2002 (quintic fade).
+    There are `nodes` gradients along each axis.     Source: K. Perlin, "Improving noise", SIGGRAPH 2002
+    (quintic fade).
     """
     angle = rng.uniform(0, 2 * np.pi, nodes)
     gradient = np.stack([np.cos(angle), np.sin(angle)])

@@ -6,23 +6,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from synth.camera.frames import piece_crops
 from synth.camera.optics import Optics
-from synth.camera.picture import flat_crops
 from synth.errors import SynthError
 from synth.measured.spectrum import WeldModel
 from synth.output.calibrate import ALPHAS, calibrate, chi_square, read_crops, regions
-from synth.output.plan import plan_flat
+from synth.output.plan import plan_pieces
 from synth.output.storage import write_image
-from synth.part.recipe import LINE, PAPER
 from synth.part.switches import ALL
+from synth.recipes.named import LINE, PAPER
 
 
 @pytest.mark.render
 def test_hidden_alphas_are_found_again(model: WeldModel) -> None:
-    hidden = replace(PAPER, alpha_weld=(0.27, 0.27), alpha_partner=(0.13, 0.13))
-    parts = [p for shard in plan_flat(91, {"ok": 24}, hidden, ALL) for p in shard.parts]
-    images, _, _ = flat_crops(parts, model, Optics())
-    found = calibrate(images, PAPER, ALL, model, seed=4, renders=12)
+    hidden = replace(
+        PAPER, surface=replace(PAPER.surface, alpha_weld=(0.27, 0.27), alpha_partner=(0.13, 0.13))
+    )
+    parts = [p for shard in plan_pieces(91, {"ok": 24}, hidden, ALL) for p in shard.parts]
+    images, _, _ = piece_crops(parts, model, Optics())
+    found = calibrate(images, PAPER, model, switches=ALL, seed=4, renders=12)
     assert found.alpha_weld == pytest.approx(0.27, abs=0.031)
     assert found.alpha_partner == pytest.approx(0.13, abs=0.031)
     assert np.unravel_index(found.pairs.argmin(), found.pairs.shape) == (
@@ -48,7 +50,7 @@ def test_regions_do_not_meet() -> None:
     assert not (weld & partner).any()
     assert weld.sum() > 20
     with pytest.raises(SynthError, match="leave no rows"):
-        regions(replace(LINE, half_width_mm=(0.2, 0.7), wobble_mm=(0.0, 0.2)))
+        regions(replace(LINE, bead=replace(LINE.bead, half_width_mm=(0.2, 0.7), wobble_mm=(0.0, 0.2))))
 
 
 def test_what_is_no_crop_is_listed(tmp_path: Path) -> None:

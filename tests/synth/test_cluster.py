@@ -8,8 +8,8 @@ import pytest
 
 from synth.measured.spectrum import WeldModel
 from synth.output.dataset import Order, write_dataset
-from synth.part.recipe import PAPER
 from synth.part.switches import ALL
+from synth.recipes.named import PAPER
 from tests.conftest import ROOT
 
 CODE = """
@@ -18,8 +18,8 @@ from distributed import LocalCluster
 from synth.__main__ import main
 if __name__ == "__main__":
     with LocalCluster(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:
-        sys.exit(main(["dataset", "--flat", "--base", "paper", "--seed", "3", "--count", "30", "--out", sys.argv[1],
-                       "--scheduler", cluster.scheduler_address]))
+        options = ["--flat", "--base", "paper", "--seed", "3", "--count", "30", "--out", sys.argv[1]]
+        sys.exit(main(["dataset", *options, "--scheduler", cluster.scheduler_address]))
 """
 
 
@@ -38,13 +38,25 @@ def test_same_bytes_from_a_cluster(tmp_path: Path, model: WeldModel) -> None:
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    write_dataset(tmp_path / "here", Order(3, 30, PAPER, ALL, flat=True), model, None, lambda n: None)
+    order = Order(seed=3, count=30, recipe=PAPER, switches=ALL, is_straight=True)
+    write_dataset(tmp_path / "here", order, model, None, lambda n: None)
     for path in (tmp_path / "here").rglob("*.*"):
         assert path.read_bytes() == (out / path.relative_to(tmp_path / "here")).read_bytes(), path
 
 
 def test_no_scheduler_there_is_said(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "synth", "dataset", "--count", "1", "--out", str(tmp_path), "--scheduler", "tcp://127.0.0.1:1"]
+    command = [
+        sys.executable,
+        "-m",
+        "synth",
+        "dataset",
+        "--count",
+        "1",
+        "--out",
+        str(tmp_path),
+        "--scheduler",
+        "tcp://127.0.0.1:1",
+    ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
     assert "--scheduler tcp://127.0.0.1:1: no Dask scheduler answers there" in done.stderr

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -14,21 +15,30 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.labelled import Defect, crop_label
-from station.classify.onnx import CLASSES
-from station.domain import SEGMENTS
+from station.classify.crop_label import OK
+from station.defects import KINDS
+from station.domain import SEGMENT_DEG
+from synth.defects.hole import Hole
 from synth.errors import SynthError
 from synth.measured.spectrum import WeldModel
 from synth.output.dataset import Order, workers, write_dataset
-from synth.output.plan import KINDS, crop_kind, plan_arcs, plan_flat, quotas
-from synth.part.part import Hole, MissingWeld, Truth, draw_part
-from synth.part.recipe import PAPER, WIDE
+from synth.output.plan import CROP_KINDS, RING_ERROR_DEG, plan_pieces, plan_rings, quotas, sure_kind
+from synth.part.part import draw_part
 from synth.part.switches import ALL
+from synth.recipes.named import PAPER, WIDE
 from tests.conftest import ROOT
 
 
 def order(count: int, flat: bool = True, seed: int = 3, heights: bool = False) -> Order:
-    return Order(seed, count, PAPER if flat else WIDE, ALL, flat, heights)
+    recipe = PAPER if flat else WIDE
+    return Order(seed=seed, count=count, recipe=recipe, switches=ALL, is_straight=flat, has_heights=heights)
+
+
+def holes() -> tuple[Hole, ...]:
+    rng = np.random.default_rng(0)
+    found = WIDE.defects["hole"].draw(rng, WIDE.bead.draw(rng))
+    assert all(isinstance(hole, Hole) for hole in found)
+    return found  # type: ignore[return-value]
 
 
 def tree(folder: Path) -> dict[str, bytes]:
@@ -38,38 +48,49 @@ def tree(folder: Path) -> dict[str, bytes]:
 @given(st.integers(1, 400), st.integers(0, 10**6))
 @settings(max_examples=25, deadline=None)
 def test_the_plan_holds_exactly_what_is_ordered(count: int, seed: int) -> None:
-    wanted = quotas(count, (0.5, 0.25, 0.25))
+    wanted = quotas(count)
     assert sum(wanted.values()) == count
-    for shards in (plan_flat(seed, wanted, PAPER, ALL), plan_arcs(seed, wanted, WIDE, ALL)):
+    for shards in (plan_pieces(seed, wanted, PAPER, ALL), plan_rings(seed, wanted, WIDE, ALL)):
         crops = [crop for shard in shards for crop in shard.crops]
         assert sorted(crop.number for crop in crops) == list(range(count))
-        assert {kind: sum(c.kind == kind for c in crops) for kind in KINDS} == wanted
+        assert {kind: sum(c.kind == kind for c in crops) for kind in CROP_KINDS} == wanted
 
 
 def test_the_default_is_the_papers() -> None:
-    assert quotas(5000, (0.5, 0.25, 0.25)) == {"ok": 2500, "hole": 1250, "missing_weld": 1250}
+    assert quotas(5000) == {"ok": 2500, "hole": 1250, "missing_weld": 1250}
 
 
-@given(
-    st.lists(st.tuples(st.floats(0, 360), st.floats(0.1, 2.4)), max_size=6),
-    st.lists(st.tuples(st.floats(0, 360), st.floats(5, 200)), max_size=2),
-    st.integers(0, SEGMENTS - 1),
-)
-def test_a_crop_is_called_what_the_learning_calls_it(
-    holes: list[tuple[float, float]], arcs: list[tuple[float, float]], segment: int
+@given(st.floats(0, 360), st.floats(0.2, 1.2), st.integers(0, 20))
+def test_a_crop_is_used_only_if_a_small_error_of_the_ring_leaves_its_kind(
+    at: float, length: float, segment: int
 ) -> None:
-    part = draw_part(
-        1,
-        Truth.OK,
-        WIDE,
-        defects=(tuple(Hole(at, 0, length, 0.2, 0, 3, 2) for at, length in holes), tuple(MissingWeld(at, at + span) for at, span in arcs)),
-    )
-    half = [np.rad2deg(length / part.radius_mm) / 2 for _, length in holes]
-    defects = [Defect(CLASSES.index("hole"), at - h, at + h) for (at, _), h in zip(holes, half, strict=True)]
-    defects += [Defect(CLASSES.index("missing_weld"), at, at + span) for at, span in arcs]
-    start, end = segment * 360 / SEGMENTS, (segment + 1) * 360 / SEGMENTS
-    kind = crop_kind(part, start, end)
-    assert {None: -1, "ok": 0, "hole": 1, "missing_weld": 2}[kind] == crop_label(tuple(defects), start, end)
+    hole = replace(holes()[0], angle_deg=at, length_mm=length)
+    part = draw_part(1, WIDE, defects=(hole,))
+    start, end = segment * SEGMENT_DEG, (segment + 1) * SEGMENT_DEG
+    first, last = hole.span_deg(part.bead)
+    middle = (first + last) / 2
+    away = abs((middle - (start + end) / 2 + 180) % 360 - 180)
+    kind = sure_kind(part, start, end)
+    if kind == "hole":
+        assert away < (end - start + last - first) / 2
+    elif kind == OK:
+        assert away > (end - start + last - first) / 2 + RING_ERROR_DEG - 1e-6
+    else:
+        assert kind is None
+
+
+def test_a_ring_has_no_hole_where_no_bead_holds_it() -> None:
+    ordered = {OK: 50, "hole": 200, "missing_weld": 200}
+    seen = 0
+    for shard in plan_rings(5, ordered, WIDE, ALL):
+        (part,) = shard.parts
+        arcs = [d.span_deg(part.bead) for d in part.defects if d.kind == "missing_weld"]
+        for defect in part.defects:
+            if defect.kind == "hole":
+                middle = sum(defect.span_deg(part.bead)) / 2
+                assert all((middle - start) % 360 > end - start for start, end in arcs)
+                seen += bool(arcs)
+    assert seen > 20
 
 
 @pytest.mark.render
@@ -105,7 +126,7 @@ def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel
             )
     for split in ("train", "val"):
         annotated = COCO(str(tmp_path / f"coco_{split}.json"))
-        assert {c["name"] for c in annotated.loadCats(annotated.getCatIds())} == {"hole", "missing_weld"}
+        assert {c["name"] for c in annotated.loadCats(annotated.getCatIds())} == {kind.name for kind in KINDS}
         for annotation in annotated.loadAnns(annotated.getAnnIds()):
             drawn = annotated.annToMask(annotation)
             assert drawn.sum() == pytest.approx(annotation["area"], rel=0.35, abs=30)
@@ -114,7 +135,7 @@ def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel
 
 @pytest.mark.render
 @pytest.mark.parametrize("flat", [True, False])
-def test_same_seed_same_bytes_on_one_and_two_workers_and_a_cluster(flat: bool, tmp_path: Path, model: WeldModel) -> None:
+def test_same_seed_same_bytes_on_one_and_two_workers(flat: bool, tmp_path: Path, model: WeldModel) -> None:
     count = 60 if flat else 30
     write_dataset(tmp_path / "here", order(count, flat), model, None, lambda n: None)
     with workers(2) as pool:
@@ -143,7 +164,20 @@ def test_what_is_finished_is_not_made_again(tmp_path: Path, model: WeldModel) ->
 
 
 def command(out: Path, *more: str) -> list[str]:
-    return [sys.executable, "-m", "synth", "dataset", "--flat", "--base", "paper", "--workers", "2", "--out", str(out), *more]
+    return [
+        sys.executable,
+        "-m",
+        "synth",
+        "dataset",
+        "--flat",
+        "--base",
+        "paper",
+        "--workers",
+        "2",
+        "--out",
+        str(out),
+        *more,
+    ]
 
 
 @pytest.mark.render
@@ -170,9 +204,13 @@ def test_a_killed_worker_is_said_and_the_run_goes_on(tmp_path: Path) -> None:
 @pytest.mark.render
 def test_a_full_disk_is_said_and_leaves_no_half_image(tmp_path: Path) -> None:
     code = "import resource, sys, signal\n"
-    code += "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))\n"
-    code += f"from synth.__main__ import main\nsys.exit(main(['part', '--ring-only', '--count', '1', '--out', {str(tmp_path)!r}]))"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=100, check=False)
+    options = ["part", "--ring-only", "--count", "1", "--out", str(tmp_path)]
+    code += "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))\n"
+    code += f"from synth.__main__ import main\nsys.exit(main({options!r}))"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=100, check=False
+    )
     assert done.returncode == 2
     assert "could not be written: File too large" in done.stderr
     assert not list(tmp_path.rglob("*.png"))

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from synth.__main__ import main
 from synth.errors import SynthError
-from synth.measured.artificial import HEIGHT_STEP_UM, NOTE, make_weld, write_x3p
+from synth.measured.artificial import HEIGHT_STEP_UM, NOTE, write_x3p
 from synth.measured.measurement import SHIPPED, Measurement, read_measurement
 
 Array = NDArray[np.float64]
@@ -23,14 +24,14 @@ def test_the_shipped_map_is_as_the_paper_says(measurement: Measurement) -> None:
 
 
 def test_the_shipped_map_can_be_made_again_and_says_that_it_is_made(tmp_path: Path) -> None:
-    write_x3p(tmp_path / "again.x3p", *make_weld(), 3.0, NOTE)
+    assert main(["artificial", "--out", str(tmp_path / "again.x3p")]) == 0
     assert (tmp_path / "again.x3p").read_bytes() == SHIPPED.read_bytes()
     assert "NOT MEASURED" in NOTE
 
 
 def test_x3p_keeps_heights_and_lost_points(tmp_path: Path, planted: Array) -> None:
     valid = np.random.default_rng(0).random(planted.shape) > 0.3
-    write_x3p(tmp_path / "a.x3p", planted, valid, 5.0, "a test")
+    write_x3p(tmp_path / "a.x3p", planted, valid, step_um=5.0, note="a test")
     found = read_measurement(tmp_path / "a.x3p")
     assert found.step_um == pytest.approx(5.0)
     assert found.lost == pytest.approx(1 - valid.mean(), abs=1e-6)
@@ -53,7 +54,10 @@ def test_a_weld_at_any_angle_is_laid_along_x(angle: int, tmp_path: Path, planted
     big = cv2.copyMakeBorder(square, 300, 300, 300, 300, cv2.BORDER_WRAP)
     big[:500], big[-500:] = planted[:1, :1], planted[:1, :1]
     matrix = cv2.getRotationMatrix2D((600, 600), -angle, 1.0)
-    np.save(tmp_path / "turned.npy", cv2.warpAffine(big, matrix, (1200, 1200), borderMode=cv2.BORDER_REFLECT)[200:1000, 200:1000])
+    np.save(
+        tmp_path / "turned.npy",
+        cv2.warpAffine(big, matrix, (1200, 1200), borderMode=cv2.BORDER_REFLECT)[200:1000, 200:1000],
+    )
     found = read_measurement(tmp_path / "turned.npy", 5.0)
     assert abs((found.turned_deg - angle + 90) % 180 - 90) <= 2
 

@@ -10,18 +10,21 @@ import numpy as np
 import pytest
 
 from synth.__main__ import main
+from synth.camera.frames import band, frame_window, piece_crops, piece_window
 from synth.camera.optics import Optics
-from synth.camera.picture import band, flat_crops, flat_window, picture
 from synth.camera.projection import ring_px
 from synth.camera.render import mitsuba_scene, render, start
 from synth.camera.scene import part_scene, window_pixels
+from synth.defects.missing_weld import MissingWeld
 from synth.measured.spectrum import WeldModel
 from synth.output.labels import mask, outlines
-from synth.output.plan import plan_flat
+from synth.output.plan import plan_pieces
 from synth.part.geometry import StraightPiece
-from synth.part.part import Hole, MissingWeld, Part, Truth, draw_part
-from synth.part.recipe import LINE, PAPER, WIDE, Recipe
+from synth.part.part import Part, draw_part
+from synth.part.pose import Pose
 from synth.part.switches import ALL, Switch
+from synth.recipes.named import LINE, PAPER, WIDE
+from tests.synth.welds import hole
 
 pytestmark = pytest.mark.render
 OPTICS = Optics()
@@ -29,35 +32,48 @@ OPTICS = Optics()
 
 def calm() -> Part:
     """A part with little relief in the middle of the picture."""
-    part = draw_part(3, Truth.OK, replace(LINE, spectral_share=0.0, fibres=(0, 0), spatter=(0, 0), soot=(0.0, 0.0)))
-    return replace(part, center_mm=(0.0, 0.0), tilt_deg=(0.0, 0.0), ripple_slope=0.03, rough_slope=0.02, bead_offset_mm=0.0)
+    part = draw_part(3, LINE)
+    return replace(
+        part,
+        pose=Pose(center_mm=(0.0, 0.0), tilt_deg=(0.0, 0.0)),
+        bead=replace(part.bead, offset_mm=0.0),
+        relief=replace(part.relief, is_spectral=False, ripple_slope=0.03, rough_slope=0.02),
+        dirt=replace(part.dirt, fibres=0, spatter=0, soot=0.0),
+    )
 
 
 def test_holes_open_exactly_where_the_label_says(model: WeldModel) -> None:
     part = replace(
         calm(),
-        holes=(Hole(40.0, 0.0, 0.6, 0.3, 0.2, 3, 2), Hole(300.0, 0.1, 0.3, 0.3, 0.0, 4, 3)),
-        tilt_deg=(0.5, -0.4),
-        center_mm=(1.0, -0.7),
+        defects=(
+            hole(40.0, length_mm=0.6, deformation=0.2),
+            hole(300.0, offset_mm=0.1, length_mm=0.3, a=4, b=3),
+        ),
+        pose=Pose(center_mm=(1.0, -0.7), tilt_deg=(0.5, -0.4)),
     )
     scene = part_scene(part, model)
     for opening in outlines(part, OPTICS):
         left, top = np.floor(opening.points.min(axis=0)).astype(int) - 12
         width, height = np.ceil(np.ptp(opening.points, axis=0)).astype(int) + 24
         seen = render(scene, OPTICS, window_pixels(left, top, width, height), 16)
-        floor, labelled = seen.floor.reshape(height, width) > 0.5, mask(opening.points - (left, top), width, height)
+        floor, labelled = (
+            seen.floor.reshape(height, width) > 0.5,
+            mask(opening.points - (left, top), width, height),
+        )
         assert labelled.sum() > 200
         assert (floor & labelled).sum() / (floor | labelled).sum() > 0.93
-        ring = cv2.dilate(labelled.astype(np.uint8), np.ones((5, 5))) - cv2.erode(labelled.astype(np.uint8), np.ones((5, 5)))
+        ring = cv2.dilate(labelled.astype(np.uint8), np.ones((5, 5))) - cv2.erode(
+            labelled.astype(np.uint8), np.ones((5, 5))
+        )
         assert not ((floor != labelled) & (ring == 0)).any()
         radiance = seen.radiance.reshape(height, width)
         assert np.median(radiance[labelled]) < 0.3 * np.median(radiance[~labelled])
 
 
 def test_the_bare_joint_is_masked_exactly(model: WeldModel) -> None:
-    part = replace(draw_part(8, Truth.OK, PAPER, defects=((), (MissingWeld(-90.0, 90.0),)), form=StraightPiece), step_mm=0.0)
-    _, _, floors = flat_crops([part], model, OPTICS)
-    left, top, width, height = flat_window(OPTICS)
+    part = draw_part(8, PAPER, defects=(MissingWeld(-90.0, 90.0),), form=StraightPiece)
+    _, _, floors = piece_crops([part], model, OPTICS)
+    left, top, width, height = piece_window(OPTICS)
     (opening,) = outlines(part, OPTICS)
     labelled, floor = mask(opening.points - (left, top), width, height), floors[0] >= 0.5
     assert labelled[:, 0].any()
@@ -67,7 +83,7 @@ def test_the_bare_joint_is_masked_exactly(model: WeldModel) -> None:
 
 
 def test_a_missing_weld_shows_a_dark_joint_at_the_ring(model: WeldModel) -> None:
-    part = replace(calm(), missing=(MissingWeld(0.0, 360.0),))
+    part = replace(calm(), defects=(MissingWeld(0.0, 360.0),))
     image, _, window = band(part, model, OPTICS)
     x, y, radius = ring_px(part, OPTICS)
     polar = cv2.warpPolar(image, (520, 720), (x - window[0], y - window[1]), 520, cv2.WARP_POLAR_LINEAR)
@@ -80,57 +96,78 @@ def test_the_light_is_that_of_mitsubas_own_integrator(model: WeldModel) -> None:
     start()
     import mitsuba as mi
 
-    part = replace(calm(), holes=(Hole(270.0, 0.0, 0.8, 0.5, 0.0, 3, 2),))
+    part = replace(calm(), defects=(hole(270.0, length_mm=0.8, width_mm=0.5),))
     scene = part_scene(part, model)
     lights = scene.lights[0]
     points = replace(scene, lights=(replace(lights, sigma_rad=np.full(lights.sigma_rad.size, 1e6)),))
     window = (2060, 620, 80, 80)
     ours = render(points, OPTICS, window_pixels(*window), 64).radiance.reshape(80, 80)
-    world: dict[str, Any] = {"type": "scene", "integrator": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0}}
+    world: dict[str, Any] = {
+        "type": "scene",
+        "integrator": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0},
+    }
     world |= {f"shape_{i}": shape for i, shape in enumerate(mitsuba_scene(scene).shapes())}
     for i, (at, value) in enumerate(zip(lights.positions_mm, lights.intensity, strict=True)):
-        world[f"light_{i}"] = {"type": "point", "position": at.tolist(), "intensity": {"type": "uniform", "value": float(value)}}
+        world[f"light_{i}"] = {
+            "type": "point",
+            "position": at.tolist(),
+            "intensity": {"type": "uniform", "value": float(value)},
+        }
     field = float(2 * np.rad2deg(np.arctan(OPTICS.width_px * OPTICS.pixel_mm / 2 / OPTICS.distance_mm)))
-    film = {"type": "hdrfilm", "width": 4200, "height": 2160, "pixel_format": "luminance", "rfilter": {"type": "box"}}
+    film = {
+        "type": "hdrfilm",
+        "width": 4200,
+        "height": 2160,
+        "pixel_format": "luminance",
+        "rfilter": {"type": "box"},
+    }
     crop = dict(zip(("crop_offset_x", "crop_offset_y", "crop_width", "crop_height"), window, strict=True))
     view = mi.ScalarTransform4f().look_at(origin=[0, 0, OPTICS.distance_mm], target=[0, 0, 0], up=[0, 1, 0])
-    sensor = mi.load_dict({"type": "perspective", "fov": field, "fov_axis": "x", "to_world": view, "film": {**film, **crop}})
+    sensor = mi.load_dict(
+        {"type": "perspective", "fov": field, "fov_axis": "x", "to_world": view, "film": {**film, **crop}}
+    )
     theirs = np.asarray(mi.render(mi.load_dict(world), sensor=sensor, spp=1024)).reshape(80, 80)
-    small = [cv2.resize(np.asarray(v, np.float32), (8, 8), interpolation=cv2.INTER_AREA) for v in (ours, theirs)]
+    small = [
+        cv2.resize(np.asarray(v, np.float32), (8, 8), interpolation=cv2.INTER_AREA) for v in (ours, theirs)
+    ]
     assert small[0] == pytest.approx(small[1], rel=0.04, abs=0.02 * float(theirs.mean()))
 
 
 def test_each_switch_and_extra_changes_the_picture(model: WeldModel) -> None:
-    (part,) = plan_flat(5, {"ok": 1}, replace(PAPER, soot=(0.6, 0.6)), ALL)[0].parts
+    (part,) = plan_pieces(5, {"ok": 1}, replace(PAPER, dirt=replace(PAPER.dirt, soot=(0.6, 0.6))), ALL)[
+        0
+    ].parts
     changed = [replace(part, switches=ALL - {s}) for s in Switch]
-    extras: list[dict[str, Any]] = [
-        {"spatter": 12},
-        {"fibres": 3},
-        {"heat_tint": 0.8},
-        {"veil": 0.1},
-        {"second_light": 1.0},
-        {"undercut_mm": 0.03},
-        {"bead_offset_mm": 0.1},
-        {"bead_scratches": 4},
-        {"material": "copper"},
-        {"alpha_weld": 0.4},
-        {"spectral": False},
+    dirt, bead, surface = part.dirt, part.bead, part.surface
+    changed += [
+        replace(part, dirt=replace(dirt, spatter=12)),
+        replace(part, dirt=replace(dirt, fibres=6)),
+        replace(part, dirt=replace(dirt, heat_tint=0.8)),
+        replace(part, dirt=replace(dirt, bead_scratches=4)),
+        replace(part, sensor=replace(part.sensor, veil=0.1)),
+        replace(part, light=replace(part.light, second=1.0)),
+        replace(part, bead=replace(bead, undercut_mm=0.03)),
+        replace(part, bead=replace(bead, offset_mm=0.1)),
+        replace(part, surface=replace(surface, material="copper")),
+        replace(part, surface=replace(surface, alpha_weld=0.4)),
+        replace(part, relief=replace(part.relief, is_spectral=False)),
     ]
-    changed += [replace(part, **extra) for extra in extras]
-    usual = flat_crops([part], model, OPTICS)[0][0].astype(int)
+    usual = piece_crops([part], model, OPTICS)[0][0].astype(int)
     for other in changed:
-        difference = np.abs(flat_crops([other], model, OPTICS)[0][0].astype(int) - usual)
+        difference = np.abs(piece_crops([other], model, OPTICS)[0][0].astype(int) - usual)
         assert difference.max() > 12, (other.switches ^ ALL, other)
 
 
 def test_same_part_same_picture_wherever_it_is_rendered(model: WeldModel) -> None:
-    part = draw_part(5, Truth.HOLE, WIDE)
+    part = draw_part(5, WIDE, kind="hole")
     window = (1900, 900, 160, 120)
-    first, second = (picture(part, model, OPTICS, window) for _ in range(2))
+    first, second = (frame_window(part, model, OPTICS, window) for _ in range(2))
     assert (first == second).all()
 
 
-def test_a_killed_lot_goes_on_and_another_seed_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_killed_lot_goes_on_and_another_seed_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     command = ["part", "--out", str(tmp_path), "--ring-only", "--seed", "5", "--strips"]
     assert main([*command, "--count", "1"]) == 0
     (first,) = (tmp_path / "frames").glob("*.png")
@@ -145,11 +182,3 @@ def test_a_killed_lot_goes_on_and_another_seed_is_refused(tmp_path: Path, capsys
     assert marked.any() == bool(label["defects"])
     assert main(["part", "--out", str(tmp_path), "--ring-only", "--seed", "6"]) == 2
     assert "another seed" in capsys.readouterr().err
-
-
-def test_recipes_draw_what_they_name() -> None:
-    for seed in range(30):
-        part = draw_part(seed, Truth.OK, PAPER)
-        assert part.spectral
-        assert (part.spatter, part.fibres, part.scratches, part.heat_tint, part.crater_mm, part.circles) == (0, 0, 0, 0.0, 0.0, False)
-        assert Recipe().hole_length_mm[0] <= draw_part(seed, Truth.HOLE, LINE).holes[0].length_mm <= Recipe().hole_length_mm[1]

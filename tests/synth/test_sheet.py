@@ -20,10 +20,27 @@ def test_a_sheet_of_a_dataset_and_of_the_switches(tmp_path: Path, capsys: pytest
     assert image.shape[0] == 9 * (134 + 26)
 
 
-def test_a_measurement_is_shown(tmp_path: Path, planted_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["measurement", str(planted_file), "--step-um", "5", "--figure", str(tmp_path / "figure.png")]) == 0
+def test_a_measurement_is_shown(
+    tmp_path: Path, planted_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert (
+        main(["measurement", str(planted_file), "--step-um", "5", "--figure", str(tmp_path / "figure.png")])
+        == 0
+    )
     said = capsys.readouterr().out
     assert "dominant pitch 0.15" in said
     assert "4.50 x 3.00 mm" in said
     assert cv2.imread(str(tmp_path / "figure.png")).shape[0] > 800
-    assert main(["measurement", str(planted_file), "--step-um", "5", "--figure", str(tmp_path / "no" / "figure.png")]) == 2
+    assert (
+        main(
+            [
+                "measurement",
+                str(planted_file),
+                "--step-um",
+                "5",
+                "--figure",
+                str(tmp_path / "no" / "figure.png"),
+            ]
+        )
+        == 2
+    )

@@ -39,7 +39,9 @@ def test_synthetic_surfaces_keep_the_measured_spectrum(model: WeldModel) -> None
     amplitude = model.amplitude
     kept = amplitude > 0
     assert amplitude[kept].min() >= THRESHOLD * amplitude.max()
-    first, second = (np.abs(np.fft.fft2(synthesize(np.random.default_rng(seed), amplitude))) for seed in (1, 2))
+    first, second = (
+        np.abs(np.fft.fft2(synthesize(np.random.default_rng(seed), amplitude))) for seed in (1, 2)
+    )
     for found in (first, second):
         assert np.abs(found[kept] / amplitude[kept] - 1).max() <= VARIATION + 1e-6
         assert found[~kept].max() < 1e-6 * amplitude.max()
@@ -79,7 +81,9 @@ def test_any_planted_row_shift_is_found(height: float, sigma: float, pitch: floa
 
 
 @given(st.floats(0.01, 0.1), st.floats(-0.1, 0.1), st.floats(0.15, 0.35), st.floats(-0.05, 0.05))
-def test_any_planted_edge_over_a_partner_step_is_found(height: float, center: float, sigma: float, slope: float) -> None:
+def test_any_planted_edge_over_a_partner_step_is_found(
+    height: float, center: float, sigma: float, slope: float
+) -> None:
     y = np.linspace(-0.8, 0.8, 300)
     found = fit_edge(y, Gaussian(height, center, sigma)(y) + slope * y * height + 0.003)
     assert found.sigma_mm == pytest.approx(sigma, rel=0.05)

@@ -1,0 +1,1 @@
+"""Generator recipes by name, and recipe files."""
