@@ -1,18 +1,20 @@
-"""`weldgate replay`: what it says and writes."""
+"""The command `weldgate replay`: judges recorded images again, prints a summary, writes files on request."""
 
 import argparse
 import os
 import sys
+from collections import Counter
 from pathlib import Path
-from typing import Any
 
 from rich.progress import track
 
 from station.analysis.truth import read_truth
+from station.domain import Verdict
 from station.errors import SettingsError
 from station.inspection.loading import load_inspector
 from station.replay.compare import compare
 from station.replay.files import sources
+from station.replay.replayed import Replayed
 from station.replay.report import write_page
 from station.replay.results import write_csv, write_json
 from station.replay.run import replay
@@ -21,7 +23,11 @@ from station.settings.model import Settings, for_images, for_recipe
 
 
 def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
-    """0 good, 1 if a file could not be read or a record is not judged as it was by the same judge. Raises WeldgateError."""
+    """Run the command and return its exit code. Raises WeldgateError.
+
+    The code is 0, or 1 if an image could not be inspected or a record is judged otherwise by the networks and
+    limits that made it.
+    """
     found = sources(arguments.paths)
     settings = _settings(arguments, shipped)
     um_per_px = settings.weld.um_per_px if arguments.um_per_px is None else arguments.um_per_px
@@ -35,24 +41,28 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
         if target is not None and (target.is_dir() or not os.access(target.resolve().parent, os.W_OK)):
             raise SettingsError(f"{target}: cannot be written there; name a file in a writable folder")
     part = None if arguments.json is None else arguments.json.with_name(arguments.json.name + ".part")
-    outcomes, problems, bad, judge = {}, [], 0, load_inspector(settings)
-    judged = replay(found, settings, judge, um_per_px / settings.weld.um_per_px, processes, part)
-    for outcome in track(judged, description="replay", total=len(found), disable=not sys.stderr.isatty(), transient=True):
-        outcomes[outcome.name] = outcome.entry
-        bad += outcome.problem is not None
-        for said in (*([outcome.problem] if outcome.problem else []), *outcome.warnings):
-            problems.append(said)
-            print(f"weldgate: {said}", file=sys.stderr)
-    entries: dict[str, dict[str, Any]] = {source.name: outcomes[source.name] for source in found}
+    judge = load_inspector(settings)
+    factor = um_per_px / settings.weld.um_per_px
+    judged = replay(found, settings, judge=judge, factor=factor, processes=processes, part=part)
+    silent = not sys.stderr.isatty()
+    as_they_came, problems, bad = dict[str, Replayed](), list[str](), 0
+    for replayed in track(judged, description="replay", total=len(found), disable=silent, transient=True):
+        as_they_came[replayed.name] = replayed
+        bad += replayed.problem is not None
+        for line in (*([replayed.problem] if replayed.problem else []), *replayed.warnings):
+            problems.append(line)
+            print(f"weldgate: {line}", file=sys.stderr)
+    results = {source.name: as_they_came[source.name] for source in found}
     if arguments.json is not None:
-        write_json(arguments.json, entries)
+        write_json(arguments.json, results.values())
     if part is not None:
         part.unlink(missing_ok=True)
     if arguments.csv is not None:
-        write_csv(arguments.csv, entries)
-    verdicts = [e["verdict"] for e in entries.values()]
-    print(f"{len(found)} images: {verdicts.count('OK')} OK, {verdicts.count('NOK')} NOK, {verdicts.count('ERROR')} ERROR")
-    comparison = compare(found, entries, judge[1]) if any(source.row is not None for source in found) else None
+        write_csv(arguments.csv, results.values())
+    verdicts = Counter(replayed.verdict for replayed in results.values())
+    print(f"{len(found)} images: {', '.join(f'{verdicts[verdict]} {verdict}' for verdict in Verdict)}")
+    recorded = any(source.row is not None for source in found)
+    comparison = compare(found, results, judge[1]) if recorded else None
     if comparison is not None:
         print("\n".join(comparison.lines()))
         for name in comparison.not_alike:
@@ -62,7 +72,16 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
         bad += len(comparison.not_alike) + len(comparison.problems)
         problems += comparison.problems
     if arguments.report is not None:
-        print(write_page(arguments.report, found, entries, judge[1], comparison, truth, problems))
+        page = write_page(
+            arguments.report,
+            sources=found,
+            results=results,
+            judge=judge[1],
+            comparison=comparison,
+            truth=truth,
+            problems=problems,
+        )
+        print(page)
     return 1 if bad else 0
 
 

@@ -1,87 +1,80 @@
-"""Two judgements of the same parts: which verdicts flip, both ways."""
+"""Compares the results of a replay with the records of the line: which verdicts flip, in which direction."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from station.archive.reader import read_record
 from station.domain import Verdict
-from station.records import Provenance, Record
+from station.records import Provenance
 from station.replay.files import Source
+from station.replay.replayed import Replayed
 
 
 @dataclass(frozen=True, slots=True)
 class Flip:
-    """A part that is judged otherwise now."""
+    """A part whose verdict now differs from that of the line."""
 
     name: str
-    before: str
-    now: str
+    before: Verdict
+    now: Verdict
     worst_before: float | None
     worst_now: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What the line said against what is said now."""
+    """The verdicts of the line and of the replay, held against each other."""
 
     compared: int
     same_judge: int
-    """Records made with the same networks, limits and settings: these must agree to the bit."""
+    """Number of records made with the same networks, limits and settings; these must agree to the bit."""
     not_alike: tuple[str, ...]
-    """Of these, the ones that do not."""
+    """Names of those among them that do not."""
     flips: tuple[Flip, ...]
     problems: tuple[str, ...]
-    """Records that cannot be read, or whose frame is not the recorded one: not compared."""
+    """Records that are not compared because they cannot be read or their frame was changed, a line each."""
 
     def lines(self) -> list[str]:
-        """For people."""
+        """Return the comparison in words, for the terminal."""
         answer = [f"compared with the line: {self.compared} parts, {len(self.flips)} verdicts flip"]
         for before, now in (("NOK", "OK"), ("OK", "NOK")):
-            flipped = [f for f in self.flips if (f.before, f.now) == (before, now)]
+            flipped = [flip for flip in self.flips if (flip.before, flip.now) == (before, now)]
             answer.append(f"  {before} to {now}: {len(flipped)}" + ("" if before == "OK" else ", would be released"))
-            answer += [f"    {f.name}: worst score {_score(f.worst_before)} to {_score(f.worst_now)}" for f in flipped]
-        others = [f for f in self.flips if "ERROR" in (f.before, f.now)]
-        answer += [f"  {f.name}: {f.before} to {f.now}" for f in others]
+            scores = [(flip.name, _score(flip.worst_before), _score(flip.worst_now)) for flip in flipped]
+            answer += [f"    {name}: worst score {worst} to {now_worst}" for name, worst, now_worst in scores]
+        others = [flip for flip in self.flips if Verdict.ERROR in (flip.before, flip.now)]
+        answer += [f"  {flip.name}: {flip.before} to {flip.now}" for flip in others]
         if self.same_judge:
             alike = self.same_judge - len(self.not_alike)
             answer.append(f"same networks, limits and settings: {self.same_judge}, of which {alike} agree to the bit")
         return answer
 
 
-def compare(sources: Sequence[Source], entries: Mapping[str, dict[str, Any]], judge: Provenance) -> Comparison:
-    """Entries of frames that come from an archive against their records."""
+def compare(sources: Sequence[Source], results: Mapping[str, Replayed], judge: Provenance) -> Comparison:
+    """Compare the results of frames that come from an archive with their records."""
     same, not_alike, flips, problems, compared = 0, [], [], [], 0
     for source in sources:
-        if source.row is None:
+        if source.archive is None or source.row is None:
             continue
-        record, problem = _record(source)
+        record, problem = read_record(source.archive, source.row)
         if record is None or problem is not None:
             problems.append(f"{source.path.parent / Path(source.row.record_file).name}: {problem}")
             continue
-        now = entries[source.name]
+        before, now = record.inspection, results[source.name]
         compared += 1
-        scores, again = [s.nok for s in record.inspection.scores], [s for s in now["segments"] if s is not None]
-        if _who(record.provenance) == _who(judge) and record.verdict is not Verdict.ERROR:
+        scores = tuple(segment.nok for segment in before.scores)
+        if _judged_by(record.provenance) == _judged_by(judge) and before.verdict is not Verdict.ERROR:
             same += 1
-            found = [{**asdict(f), "kind": str(f.kind)} for f in record.inspection.findings]
-            if scores != again or found != now["findings"] or str(record.verdict) != now["verdict"]:
+            if (before.verdict, scores, before.findings) != (now.verdict, now.scores, now.findings):
                 not_alike.append(source.name)
-        if str(record.verdict) != now["verdict"]:
-            worst = (max(scores, default=None), max(again, default=None))
-            flips.append(Flip(source.name, str(record.verdict), now["verdict"], *worst))
+        if before.verdict is not now.verdict:
+            flips.append(Flip(source.name, before.verdict, now.verdict, max(scores, default=None), now.worst))
     return Comparison(compared, same, tuple(not_alike), tuple(flips), tuple(problems))
 
 
-def _record(source: Source) -> tuple[Record | None, str | None]:
-    if source.row is None:
-        return None, "belongs to no record"
-    return read_record(Path(str(source.path)[: -len(str(source.row.frame_file))]), source.row)
-
-
-def _who(p: Provenance) -> tuple[object, ...]:
-    return p.model_hash, p.ring_model_hash, p.thresholds, p.limits_hash
+def _judged_by(provenance: Provenance) -> tuple[object, ...]:
+    return provenance.model_hash, provenance.ring_model_hash, provenance.thresholds, provenance.limits_hash
 
 
 def _score(value: float | None) -> str:

@@ -1,4 +1,4 @@
-"""Which files are to be judged, and what an archive already says of them."""
+"""Finds the images to be judged, and the record of each that comes from an archive."""
 
 import os
 from collections.abc import Iterable, Iterator
@@ -13,37 +13,41 @@ from station.files.image import SUFFIXES
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """One image, and the row of the archive that it belongs to, if any."""
+    """One image, with the archive and the row of its record if it has one."""
 
     name: str
-    """Unique, relative to what the paths have in common."""
+    """Unique; relative to the folder that all paths have in common."""
     path: Path
+    archive: Path | None = None
+    """Folder of the archive; None, as the row, if the image does not come from one."""
     row: Row | None = None
 
 
 def sources(paths: Iterable[Path]) -> list[Source]:
-    """Images among `paths`; folders are searched all the way down in the order of names, links to folders are not followed.
+    """Return the images among `paths`.
 
-    An archive gives the frames of its records. A file that is found twice is judged once. Raises ImageError if a path does not exist or
-    no image is found, RecordError.
+    Folders are searched all the way down in the order of names; links to folders are not followed. An archive
+    gives the frames of its records. A file that is found twice is judged once. Raises ImageError if a path does not
+    exist or no image is found, RecordError if an archive cannot be read.
     """
-    found: dict[Path, tuple[Path, Row | None]] = {}
+    found: dict[Path, tuple[Path, Path | None, Row | None]] = {}
     for path in paths:
         if (path / NAME).is_file():
             for row in find(path):
                 if row.frame_file is not None and row.frame_state == "kept":
-                    found.setdefault((path / row.frame_file).resolve(), (path / row.frame_file, row))
+                    found.setdefault((path / row.frame_file).resolve(), (path / row.frame_file, path, row))
         elif path.is_dir():
             for file in _below(path):
-                found.setdefault(_real(file), (file, None))
+                found.setdefault(_real(file), (file, None, None))
         elif path.exists() or path.is_symlink():
-            found.setdefault(_real(path), (path, None))
+            found.setdefault(_real(path), (path, None, None))
         else:
             raise ImageError(f"{path}: no such file or folder")
     if not found:
         raise ImageError(f"{', '.join(str(p) for p in paths)}: no images found; PNG, BMP, TIFF and JPEG are read")
-    base = Path(os.path.commonpath([path.absolute().parent for path, _ in found.values()]))
-    return [Source(path.absolute().relative_to(base).as_posix(), path, row) for path, row in found.values()]
+    base = Path(os.path.commonpath([path.absolute().parent for path, _, _ in found.values()]))
+    names = (path.absolute().relative_to(base).as_posix() for path, _, _ in found.values())
+    return [Source(name, *place) for name, place in zip(names, found.values(), strict=True)]
 
 
 def _below(folder: Path) -> Iterator[Path]:
@@ -55,5 +59,5 @@ def _below(folder: Path) -> Iterator[Path]:
 def _real(path: Path) -> Path:
     try:
         return path.resolve()
-    except (OSError, RuntimeError):  # a loop of links: reading it says so
+    except (OSError, RuntimeError):  # a loop of links: reading it reports that
         return path.absolute()

@@ -1,50 +1,50 @@
-"""What a replay brought, as a page: counts, verdicts that flip with their pictures, errors where the truth is known."""
+"""The results of a replay as a page: counts, images of flipped verdicts, errors where the truth is known."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from station.analysis.report.page import Rows, truth_rows
 from station.analysis.report.strip import Gallery, Weld, strip
 from station.analysis.report.template import render
 from station.analysis.truth import Errors, errors
-from station.domain import Ring
+from station.domain import Ring, Verdict
 from station.files.durable import write_whole
 from station.records import Provenance
 from station.replay.compare import Comparison
 from station.replay.files import Source
+from station.replay.replayed import Replayed
 
 SHOWN = 40
-"""Pictures of each kind."""
+"""Largest number of welds in one gallery."""
 FLIPS = (
-    ("NOK", "OK", "NOK on the line, OK now: would be released"),
-    ("OK", "NOK", "OK on the line, NOK now"),
+    (Verdict.NOK, Verdict.OK, "NOK on the line, OK now: would be released"),
+    (Verdict.OK, Verdict.NOK, "OK on the line, NOK now"),
 )
 TEMPLATE = Path(__file__).with_name("report.html.j2")
 
 
 @dataclass(frozen=True, slots=True)
 class AgainstLine:
-    """Verdicts of the replay next to those of the line."""
+    """The verdicts of the replay next to those of the line."""
 
     compared: int
     flipped: int
     flips: tuple[Gallery, ...]
     errors: tuple[str, ...]
-    """Flips from or to ERROR, one line each."""
+    """Flips from or to ERROR, a line each."""
     not_alike: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplayPage:
-    """What report.html.j2 lays out; rows are pairs of a name and a text."""
+    """The content of report.html.j2; rows are pairs of a name and a text."""
 
     title: str
     summary: Rows
     line: AgainstLine | None
-    """None: no record was among the images."""
+    """None: none of the images comes from an archive."""
     truth: Rows | None
     """None: the truth is not known."""
     wrong: tuple[Gallery, ...]
@@ -53,22 +53,23 @@ class ReplayPage:
 
 def write_page(
     folder: Path,
+    *,
     sources: Sequence[Source],
-    entries: Mapping[str, dict[str, Any]],
+    results: Mapping[str, Replayed],
     judge: Provenance,
     comparison: Comparison | None,
     truth: Mapping[str, str] | None,
     problems: Sequence[str],
 ) -> Path:
     """Write `folder`/report.html and return its path. Raises OSError."""
-    welds = _Welds({source.name: source.path for source in sources}, entries)
-    verdicts = Counter(entry["verdict"] for entry in entries.values())
-    found = None if truth is None else _errors(truth, entries)
+    welds = _Welds({source.name: source.path for source in sources}, results)
+    verdicts = Counter(replayed.verdict for replayed in results.values())
+    found = None if truth is None else _errors(truth, results)
     page = ReplayPage(
         title="weldgate: replay",
         summary=(
-            ("images", str(len(entries))),
-            *((v, str(verdicts[v])) for v in ("OK", "NOK", "ERROR")),
+            ("images", str(len(results))),
+            *((str(verdict), str(verdicts[verdict])) for verdict in Verdict),
             ("model", judge.model_version),
             ("thresholds", judge.limits),
             ("recipe", str(judge.recipe)),
@@ -84,22 +85,25 @@ def write_page(
     return path
 
 
-def _errors(truth: Mapping[str, str], entries: Mapping[str, dict[str, Any]]) -> Errors:
-    """A truth may name files with or without their folder and ending."""
-    names = {key: name for name in entries for key in (Path(name).stem, Path(name).name, name)}
+def _errors(truth: Mapping[str, str], results: Mapping[str, Replayed]) -> Errors:
+    """Return the errors against a truth, which may name files with or without folder and suffix."""
+    names = {key: name for name in results for key in (Path(name).stem, Path(name).name, name)}
     return errors(
         {names[key]: true for key, true in truth.items() if key in names},
-        {name: e["verdict"] for name, e in entries.items()},
+        {name: str(replayed.verdict) for name, replayed in results.items()},
     )
 
 
 def _against_line(comparison: Comparison, welds: "_Welds") -> AgainstLine:
-    flips = [(title, [f.name for f in comparison.flips if (f.before, f.now) == (before, now)]) for before, now, title in FLIPS]
+    names: dict[tuple[Verdict, Verdict], list[str]] = {}
+    for flip in comparison.flips:
+        names.setdefault((flip.before, flip.now), []).append(flip.name)
+    to_error = [flip for flip in comparison.flips if Verdict.ERROR in (flip.before, flip.now)]
     return AgainstLine(
         comparison.compared,
         len(comparison.flips),
-        welds.galleries(*flips),
-        tuple(f"{f.name}: {f.before} to {f.now}" for f in comparison.flips if "ERROR" in (f.before, f.now)),
+        welds.galleries(*((title, names.get((before, now), [])) for before, now, title in FLIPS)),
+        tuple(f"{flip.name}: {flip.before} to {flip.now}" for flip in to_error),
         tuple(comparison.not_alike),
     )
 
@@ -111,10 +115,10 @@ def _wrong(found: Errors, welds: "_Welds") -> tuple[Gallery, ...]:
 @dataclass(frozen=True, slots=True)
 class _Welds:
     pictures: Mapping[str, Path]
-    entries: Mapping[str, dict[str, Any]]
+    results: Mapping[str, Replayed]
 
     def galleries(self, *titled: tuple[str, Sequence[str]]) -> tuple[Gallery, ...]:
-        """A gallery for each title that has names."""
+        """Return a gallery for each title that has names."""
         return tuple(self._gallery(title, names) for title, names in titled if names)
 
     def _gallery(self, title: str, names: Sequence[str]) -> Gallery:
@@ -122,14 +126,11 @@ class _Welds:
         return Gallery(title + more, tuple(self._weld(name) for name in names[:SHOWN]))
 
     def _weld(self, name: str) -> Weld:
-        entry = self.entries[name]
-        center, worst = (
-            entry.get("center"),
-            max((s for s in entry["segments"] if s is not None), default=None),
-        )
-        ring = None if center is None else Ring(center[0], center[1], entry["radius"], 1.0)
-        found = "; ".join(f"{f['kind']} at {f['start_deg']:.0f}°, {f['length_mm']:.2f} mm long" for f in entry["findings"])
+        replayed = self.results[name]
+        circle, worst = replayed.circle, replayed.worst
+        ring = None if circle is None else Ring(circle.center_x_px, circle.center_y_px, circle.radius_px, 1.0)
+        lines = (f"{f.kind} at {f.start_deg:.0f}°, {f.length_mm:.2f} mm long" for f in replayed.findings)
         score = "" if worst is None else f"worst score {worst:.3f}"
-        said = ", ".join(text for text in (entry["reason"] or "", score, found) if text)
-        spans = ((f["start_deg"], f["end_deg"]) for f in entry["findings"])
-        return Weld(name, f"{entry['verdict']}: {said}", strip(self.pictures[name], ring, spans))
+        said = ", ".join(text for text in (replayed.reason or "", score, "; ".join(lines)) if text)
+        spans = ((finding.start_deg, finding.end_deg) for finding in replayed.findings)
+        return Weld(name, f"{replayed.verdict}: {said}", strip(self.pictures[name], ring, spans))

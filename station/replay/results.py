@@ -1,28 +1,132 @@
-"""The results as files: JSON with everything, CSV with one row a file."""
+"""Results of a replay as files: JSON with everything, CSV with one row per image.
+
+`as_entry` and `from_entry` are the only places that know the JSON form.
+"""
 
 import csv
 import io
 import json
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import NotRequired, TypedDict
 
+from station.defects import Reason
+from station.domain import SEGMENTS, Finding, Verdict
 from station.files.durable import write_whole
+from station.replay.replayed import Circle, Replayed
 
 
-def write_json(path: Path, entries: dict[str, dict[str, Any]]) -> None:
-    """Raises OSError."""
-    _write(path, json.dumps(entries, indent=1))
+class FindingEntry(TypedDict):
+    """A finding in the JSON form."""
+
+    kind: str
+    start_deg: float
+    end_deg: float
+    length_mm: float
+    score: float
+    width_mm: float | None
+    area_mm2: float | None
 
 
-def write_csv(path: Path, entries: dict[str, dict[str, Any]]) -> None:
-    """Name, verdict, reason, ring, worst score. Raises OSError."""
+class Entry(TypedDict):
+    """One image in the JSON form: pixels of the input image, angle 0 at +x, clockwise as seen.
+
+    An image that could not be inspected has the keys `verdict`, `reason`, `segments` and `findings` alone.
+    """
+
+    center: NotRequired[list[float] | None]
+    radius: NotRequired[float | None]
+    verdict: str
+    reason: str | None
+    segments: list[float] | list[None]
+    unwrap_start_deg: NotRequired[float]
+    direction: NotRequired[str]
+    findings: list[FindingEntry]
+    novelty: NotRequired[float | None]
+    inspection_ms: NotRequired[float]
+
+
+def as_entry(replayed: Replayed) -> Entry:
+    """Return the JSON form, which has neither name nor warnings."""
+    if replayed.inspection_ms is None:
+        return {
+            "verdict": str(replayed.verdict),
+            "reason": replayed.reason,
+            "segments": [None] * SEGMENTS,
+            "findings": [],
+        }
+    circle = replayed.circle
+    return {
+        "center": None if circle is None else [circle.center_x_px, circle.center_y_px],
+        "radius": None if circle is None else circle.radius_px,
+        "verdict": str(replayed.verdict),
+        "reason": replayed.reason,
+        "segments": list(replayed.scores) or [None] * SEGMENTS,
+        "unwrap_start_deg": 0.0,
+        "direction": "cw",
+        "findings": [_finding_entry(finding) for finding in replayed.findings],
+        "novelty": replayed.novelty,
+        "inspection_ms": replayed.inspection_ms,
+    }
+
+
+def from_entry(name: str, entry: Entry, warnings: Iterable[str] = ()) -> Replayed:
+    """Return the result that has this JSON form.
+
+    Raises ValueError, KeyError, TypeError, AttributeError or IndexError if `entry` is not of this form.
+    """
+    center, radius = entry.get("center"), entry.get("radius")
+    return Replayed(
+        name=name,
+        verdict=Verdict(entry["verdict"]),
+        reason=entry["reason"],
+        circle=None if center is None or radius is None else Circle(center[0], center[1], radius),
+        scores=tuple(score for score in entry["segments"] if score is not None),
+        findings=tuple(_finding(finding) for finding in entry["findings"]),
+        novelty=entry.get("novelty"),
+        inspection_ms=entry.get("inspection_ms"),
+        warnings=tuple(warnings),
+    )
+
+
+def _finding_entry(finding: Finding) -> FindingEntry:
+    return {
+        "kind": str(finding.kind),
+        "start_deg": finding.start_deg,
+        "end_deg": finding.end_deg,
+        "length_mm": finding.length_mm,
+        "score": finding.score,
+        "width_mm": finding.width_mm,
+        "area_mm2": finding.area_mm2,
+    }
+
+
+def _finding(entry: FindingEntry) -> Finding:
+    return Finding(
+        kind=Reason(entry["kind"]),
+        start_deg=entry["start_deg"],
+        end_deg=entry["end_deg"],
+        length_mm=entry["length_mm"],
+        score=entry["score"],
+        width_mm=entry["width_mm"],
+        area_mm2=entry["area_mm2"],
+    )
+
+
+def write_json(path: Path, results: Iterable[Replayed]) -> None:
+    """Write all results by name. Raises OSError."""
+    _write(path, json.dumps({replayed.name: as_entry(replayed) for replayed in results}, indent=1))
+
+
+def write_csv(path: Path, results: Iterable[Replayed]) -> None:
+    """Write name, verdict, reason, ring and worst score of each image. Raises OSError."""
     table = io.StringIO(newline="")
     writer = csv.writer(table)
     writer.writerow(("file", "verdict", "reason", "center_x_px", "center_y_px", "radius_px", "worst_p_nok"))
-    for name, item in entries.items():
-        x, y = item.get("center") or (None, None)
-        scores = [s for s in item["segments"] if s is not None]
-        writer.writerow((name, item["verdict"], item["reason"], x, y, item.get("radius"), max(scores, default=None)))
+    for replayed in results:
+        circle = replayed.circle
+        ring = (None,) * 3 if circle is None else (circle.center_x_px, circle.center_y_px, circle.radius_px)
+        writer.writerow((replayed.name, str(replayed.verdict), replayed.reason, *ring, replayed.worst))
     _write(path, table.getvalue())
 
 

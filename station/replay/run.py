@@ -1,4 +1,4 @@
-"""Many images on all cores; what was judged before an interruption is not judged again."""
+"""Judges many images on all cores; those that were judged before an interruption are not judged again."""
 
 import hashlib
 import json
@@ -17,22 +17,30 @@ from station.inspection.inspector import Inspector
 from station.inspection.loading import load_inspector
 from station.records import Provenance
 from station.replay.files import Source
-from station.replay.judge import Outcome, judge_image
+from station.replay.judge import judge_image
+from station.replay.replayed import Replayed
+from station.replay.results import as_entry, from_entry
 from station.settings.model import Settings
 
 AHEAD = 4
-"""Images handed out for each process: enough to keep it busy, few enough to be stopped."""
+"""Images that wait for each process: enough to keep it busy, few enough to be stopped."""
 
 _inspector: Inspector | None = None
 
 
 def replay(
-    sources: Sequence[Source], settings: Settings, judge: tuple[Inspector, Provenance], factor: float, processes: int, part: Path | None
-) -> Iterator[Outcome]:
-    """Outcomes in the order in which they come; images are made larger by `factor` first.
+    sources: Sequence[Source],
+    settings: Settings,
+    *,
+    judge: tuple[Inspector, Provenance],
+    factor: float,
+    processes: int,
+    part: Path | None,
+) -> Iterator[Replayed]:
+    """Yield a result for each image as soon as it is judged; images are enlarged by `factor` first.
 
-    `judge` is loaded from the settings. `part`: file of an interrupted run, continued and kept until the caller removes it. Raises
-    ModelError.
+    `judge` is loaded from the settings. `part` is the file of an interrupted run; it is continued, and kept
+    until the caller removes it. Raises ModelError.
     """
     inspector, provenance = judge
     key = hashlib.sha256(f"{asdict(provenance)} {factor}".encode()).hexdigest()
@@ -47,25 +55,27 @@ def replay(
     with ExitStack() as stack:
         file = None if part is None else stack.enter_context(_opened(part, key, bool(known)))
         plain = processes == 1 or len(todo) < 2 * processes
-        for mark, outcome in _plainly(todo, inspector, factor) if plain else _pooled(todo, settings, factor, processes):
-            if file is not None and outcome.problem is None:
-                file.write(json.dumps([mark, asdict(outcome)]) + "\n")
+        judged = _plainly(todo, inspector, factor) if plain else _pooled(todo, settings, factor, processes)
+        for mark, replayed in judged:
+            if file is not None and replayed.problem is None:
+                file.write(_line(mark, replayed))
                 file.flush()
-            yield outcome
+            yield replayed
 
 
 Marked = tuple[Source, str]
+Judged = tuple[str, Replayed]
 
 
-def _plainly(todo: list[Marked], inspector: Inspector, factor: float) -> Iterator[tuple[str, Outcome]]:
+def _plainly(todo: list[Marked], inspector: Inspector, factor: float) -> Iterator[Judged]:
     for source, mark in todo:
         yield mark, judge_image(inspector, source, factor)
 
 
-def _pooled(todo: list[Marked], settings: Settings, factor: float, processes: int) -> Iterator[tuple[str, Outcome]]:
+def _pooled(todo: list[Marked], settings: Settings, factor: float, processes: int) -> Iterator[Judged]:
     model = settings.model.model_copy(update={"threads": 1, "reference_path": None})
     alone = settings.model_copy(update={"model": model})
-    waiting: list[tuple[str, Future[Outcome]]] = []
+    waiting: list[tuple[str, Future[Replayed]]] = []
     with ProcessPoolExecutor(processes, get_context("spawn"), _begin, (alone,)) as pool:
         try:
             for source, mark in todo:
@@ -102,9 +112,9 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _judge(source: Source, factor: float) -> Outcome:
+def _judge(source: Source, factor: float) -> Replayed:
     if _inspector is None:
-        raise RuntimeError("the process was not begun")
+        raise RuntimeError("the process has no inspector")
     return judge_image(_inspector, source, factor)
 
 
@@ -116,8 +126,15 @@ def _mark(source: Source) -> str:
         return source.name
 
 
-def _known(part: Path, key: str) -> dict[str, Outcome]:
-    known: dict[str, Outcome] = {}
+def _line(mark: str, replayed: Replayed) -> str:
+    """One line of the file of an interrupted run; `_known` reads it."""
+    entry, warnings = as_entry(replayed), replayed.warnings
+    kept = {"name": replayed.name, "entry": entry, "problem": None, "warnings": warnings}
+    return json.dumps([mark, kept]) + "\n"
+
+
+def _known(part: Path, key: str) -> dict[str, Replayed]:
+    known: dict[str, Replayed] = {}
     try:
         lines = part.read_text().splitlines()
     except OSError:
@@ -126,10 +143,10 @@ def _known(part: Path, key: str) -> dict[str, Outcome]:
         return known
     for line in lines[1:]:
         try:
-            mark, outcome = json.loads(line)
-        except ValueError:
-            break  # cut off in the middle of a line
-        known[mark] = Outcome(outcome["name"], outcome["entry"], outcome["problem"], tuple(outcome["warnings"]))
+            mark, kept = json.loads(line)
+            known[mark] = from_entry(kept["name"], kept["entry"], kept["warnings"])
+        except (ValueError, KeyError, TypeError, AttributeError, IndexError):
+            continue  # cut off in the middle of the line: that image is judged again
     return known
 
 

@@ -14,7 +14,9 @@ from hypothesis import strategies as st
 from deploy.demo.summary import write_json as write_summary
 from station.analysis import export
 from station.classify.drift import Reference, write_reference
+from station.domain import Verdict
 from station.files.durable import replacing, write_whole
+from station.replay.replayed import Replayed
 from station.replay.results import write_csv
 from synth.errors import SynthError
 from synth.output.storage import write_bytes
@@ -99,9 +101,9 @@ def test_every_room_writes_whole_files(tmp_path: Path, monkeypatch: pytest.Monke
         raise OSError(5, "Input/output error", str(part))
 
     monkeypatch.setattr(Path, "replace", torn)
-    entry = {"a.png": {"verdict": "OK", "reason": None, "segments": []}}
+    result = Replayed(name="a.png", verdict=Verdict.ERROR, reason="no ring")
     with pytest.raises(OSError, match="Input/output"):
-        write_csv(tmp_path / "r.csv", entry)
+        write_csv(tmp_path / "r.csv", [result])
     with pytest.raises(OSError, match="Input/output"):
         write_reference(tmp_path / "reference.json", Reference("x", 1, (0.0,), (1.0,), 1.0))
     with pytest.raises(OSError, match="Input/output"):

@@ -1,11 +1,12 @@
 """Recorded images judged again, of this archive or of a folder: what is said now, beside what the line said."""
 
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
+from station.domain import Verdict
 from station.files.image import read_image
 from station.inspection.inspector import Inspector
 from station.inspection.loading import load_inspector
@@ -23,6 +24,7 @@ from station.records import Provenance
 from station.replay.compare import Comparison, compare
 from station.replay.files import Source, sources
 from station.replay.judge import at_scale
+from station.replay.replayed import Replayed
 from station.replay.report import write_page
 from station.replay.results import write_json
 from station.replay.run import replay
@@ -34,10 +36,11 @@ NEWEST = (20, 100, 500)
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """All that a replay brought."""
+    """One finished replay."""
 
     sources: tuple[Source, ...]
-    entries: dict[str, dict[str, Any]]
+    results: dict[str, Replayed]
+    """By the name of the image."""
     judge: tuple[Inspector, Provenance]
     factor: float
     comparison: Comparison | None
@@ -170,10 +173,9 @@ class ReplayPage(Page):
             self._on_chosen()
 
     def _tell(self, found: Done) -> None:
-        verdicts = [entry["verdict"] for entry in found.entries.values()]
-        counts = {verdict: verdicts.count(verdict) for verdict in ("OK", "NOK", "ERROR")}
+        counts = Counter(replayed.verdict for replayed in found.results.values())
         text = translate("replay", "{n} images: {ok} OK, {nok} NOK, {error} not judged").format(
-            n=len(verdicts), ok=counts["OK"], nok=counts["NOK"], error=counts["ERROR"]
+            n=len(found.results), ok=counts[Verdict.OK], nok=counts[Verdict.NOK], error=counts[Verdict.ERROR]
         )
         c = found.comparison
         if c is not None:
@@ -192,17 +194,18 @@ class ReplayPage(Page):
         if self.done is None:
             self.table.fill(())
             return
-        before = {f.name: f.before for f in self.done.comparison.flips} if self.done.comparison is not None else {}
+        flips = () if self.done.comparison is None else self.done.comparison.flips
+        before = {flip.name: flip.before for flip in flips}
         rows, names = [], []
         for source in self.done.sources:
-            entry, flipped = self.done.entries[source.name], before.get(source.name)
+            replayed, flipped = self.done.results[source.name], before.get(source.name)
             if self.only_flips.isChecked() and flipped is None:
                 continue
             line = "–" if source.row is None else source.row.verdict
-            worst = max((s for s in entry["segments"] if s is not None), default=None)
             mark = "≠ " if flipped is not None else ""
-            reason = "" if entry["reason"] is None else data(entry["reason"])
-            rows.append((source.name, line, mark + entry["verdict"], "–" if worst is None else f"{worst:.3f}", reason))
+            score = "–" if replayed.worst is None else f"{replayed.worst:.3f}"
+            reason = "" if replayed.reason is None else data(replayed.reason)
+            rows.append((source.name, line, f"{mark}{replayed.verdict}", score, reason))
             names.append(source.name)
         self.table.fill(rows, names)
 
@@ -232,8 +235,16 @@ class ReplayPage(Page):
             return
 
         def work(_told: Told) -> str:
-            page = write_page(folder, found.sources, found.entries, found.judge[1], found.comparison, None, found.problems)
-            write_json(folder / "replay.json", found.entries)
+            page = write_page(
+                folder,
+                sources=found.sources,
+                results=found.results,
+                judge=found.judge[1],
+                comparison=found.comparison,
+                truth=None,
+                problems=found.problems,
+            )
+            write_json(folder / "replay.json", found.results.values())
             return str(page)
 
         self._work.start(translate("replay", "report"), work)
@@ -251,12 +262,13 @@ def _judged(settings: Settings, path: Path, count: int | None, scale_um_per_px: 
         found = found[-count:]
     one = settings.model_copy(update={"model": settings.model.model_copy(update={"threads": 1, "reference_path": None})})
     judge, factor = load_inspector(one), scale_um_per_px / settings.weld.um_per_px
-    entries: dict[str, dict[str, Any]] = {}
+    results: dict[str, Replayed] = {}
     problems: list[str] = []
-    for outcome in replay(found, one, judge, factor, 1, None):
-        entries[outcome.name] = outcome.entry
-        problems += [*([outcome.problem] if outcome.problem else []), *outcome.warnings]
-        if not told(len(entries), len(found)):
+    for replayed in replay(found, one, judge=judge, factor=factor, processes=1, part=None):
+        results[replayed.name] = replayed
+        problems += [*([replayed.problem] if replayed.problem else []), *replayed.warnings]
+        if not told(len(results), len(found)):
             return None
-    comparison = compare(found, entries, judge[1]) if any(source.row is not None for source in found) else None
-    return Done(tuple(found), entries, judge, factor, comparison, tuple(problems))
+    recorded = any(source.row is not None for source in found)
+    comparison = compare(found, results, judge[1]) if recorded else None
+    return Done(tuple(found), results, judge, factor, comparison, tuple(problems))
