@@ -1,8 +1,9 @@
-"""Long work beside the window: with progress, can be cancelled, one at a time for its owner."""
+"""Runs long work next to the window: with progress, with a button to cancel, one job at a time."""
 
 import threading
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QWidget
@@ -10,18 +11,40 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QW
 from station.errors import WeldgateError
 from station.panel.look.words import translate
 
-Told = Callable[[int, int], bool]
-"""Called by the work with how much is done of how much; False: cancelled, end soon."""
+Progress = Callable[[int, int], bool]
+"""Function that the work calls with how much is done of how much; returns False if the work was cancelled."""
+
+Result = TypeVar("Result")
+Work = Callable[[Progress], Result | None]
+"""Function that does the work and returns its result, or None if it was cancelled."""
+
+
+@dataclass(slots=True)
+class _Outcome(Generic[Result]):
+    """Result of a job, or why it failed; written on its thread, read on the window's once it has ended."""
+
+    result: Result | None = None
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Job:
+    """A running job, and what happens on the window's thread once it has ended."""
+
+    thread: threading.Thread
+    finish: Callable[[], None]
+    cancelled: threading.Event = field(default_factory=threading.Event)
+    closed: threading.Event = field(default_factory=threading.Event)
+    """Set when the window no longer waits for it."""
 
 
 class WorkBar(QWidget):
-    """A progress bar with a button to cancel; hidden while there is nothing to do."""
+    """A progress bar with a button to cancel; hidden while nothing runs."""
 
-    done = Signal(object)
-    """What the work returned; not after a cancel."""
     failed = Signal(str)
+    """Why the work failed or could not be started."""
     _moved = Signal(int, int)
-    _ended = Signal(object, str, bool)
+    _ended = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -32,69 +55,78 @@ class WorkBar(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         for widget, stretch in ((self._label, 0), (self._bar, 1), (self._cancel, 0)):
             row.addWidget(widget, stretch)
-        self._thread: threading.Thread | None = None
-        self._cancelled = threading.Event()
+        self._job: _Job | None = None
         self._moved.connect(self._on_moved)
         self._ended.connect(self._on_ended)
         self.hide()
 
     @property
     def busy(self) -> bool:
-        """Whether something is being done."""
-        return self._thread is not None
+        """True if a job is running."""
+        return self._job is not None
 
-    def start(self, what: str, work: Callable[[Told], Any]) -> bool:
-        """False, and said, if something is still being done."""
-        if self._thread is not None:
+    def start(self, title: str, work: Work[Result], then: Callable[[Result], object]) -> bool:
+        """Run `work` on a thread of its own and hand its result to `then` on this one.
+
+        `then` is not called if the work failed or was cancelled. Returns False, and emits `failed`, if another job is
+        running.
+        """
+        if self._job is not None:
             self.failed.emit(translate("work", "something is still being done: wait for it or cancel it"))
             return False
-        self._cancelled = cancelled = threading.Event()
-        self._label.setText(what)
-        self._bar.setRange(0, 0)
-        self.show()
+        outcome = _Outcome[Result]()
 
-        def told(done: int, of: int) -> bool:
+        def finish() -> None:
+            if outcome.problem:
+                self.failed.emit(outcome.problem)
+            elif outcome.result is not None and not job.cancelled.is_set():
+                then(outcome.result)
+
+        def progress(done: int, of: int) -> bool:
             self._moved.emit(done, of)
-            return not cancelled.is_set()
+            return not job.cancelled.is_set()
 
         def run() -> None:
-            result, problem = None, ""
             try:
-                result = work(told)
+                outcome.result = work(progress)
             except (WeldgateError, OSError) as error:
-                problem = str(error)
-            except Exception as error:  # noqa: BLE001 - the window goes on
-                problem = f"{type(error).__name__}: {error}"
-            if not closing.is_set():
-                self._ended.emit(result, problem, cancelled.is_set())
+                outcome.problem = str(error)
+            except Exception as error:  # noqa: BLE001 - the window continues
+                outcome.problem = f"{type(error).__name__}: {error}"
+            if not job.closed.is_set():
+                self._ended.emit(job)
 
-        closing = self._closing = threading.Event()
-        self._thread = threading.Thread(target=run, name="work", daemon=True)
-        self._thread.start()
+        self._job = job = _Job(threading.Thread(target=run, name="work", daemon=True), finish)
+        self._label.setText(title)
+        self._bar.setRange(0, 0)
+        self.show()
+        job.thread.start()
         return True
 
     def cancel(self) -> None:
-        """The work ends as soon as it looks."""
-        self._cancelled.set()
+        """Ask the job to end; it does so when it next reports its progress."""
+        if self._job is not None:
+            self._job.cancelled.set()
 
     def close_work(self) -> None:
-        """Cancel and wait a little; nothing is told any more. What does not look whether it is cancelled ends with its step."""
-        if self._thread is not None:
-            self._closing.set()
-            self._cancelled.set()
-            self._thread.join(timeout=1)
-            self._thread = None
+        """Cancel the job and wait for it briefly; its result is dropped.
+
+        A job that does not report its progress ends with the step that it is in.
+        """
+        if self._job is not None:
+            job, self._job = self._job, None
+            job.closed.set()
+            job.cancelled.set()
+            job.thread.join(timeout=1)
 
     def _on_moved(self, done: int, of: int) -> None:
         self._bar.setRange(0, of)
         self._bar.setValue(done)
 
-    def _on_ended(self, result: Any, problem: str, cancelled: bool) -> None:
-        if self._thread is not None:
-            self._thread.join()
-            self._thread = None
+    def _on_ended(self, job: _Job) -> None:
+        if job is not self._job:
+            return  # closed after it had ended
+        job.thread.join()
+        self._job = None
         self.hide()
-        if problem:
-            self.failed.emit(problem)
-        elif not cancelled:
-            self.done.emit(result)
+        job.finish()

@@ -24,7 +24,7 @@ from station.panel.session.session import Session
 from station.panel.widgets.card import label
 from station.panel.widgets.dialogs import ask_file, ask_folder
 from station.panel.widgets.weld.kept import defect_map, small_pictures
-from station.panel.widgets.work import Told, WorkBar
+from station.panel.widgets.work import Progress, WorkBar
 
 REFRESH_MS = 1000
 GALLERY = 60
@@ -51,7 +51,6 @@ class HistoryPage(Page):
         self.record.marked.connect(self._look)
         self.gallery.toggled.connect(self._on_gallery)
         self.fields.asked.connect(self.search)
-        self._work.done.connect(self._on_pictures)
         self._work.failed.connect(lambda why: self._problem.setText(data(why)))
         session.account.changed.connect(self.comment.clear)
         session.account.changed.connect(self.record.clear_marks)
@@ -220,18 +219,22 @@ class HistoryPage(Page):
         folder, known = self._session.received.folder, {**self._pictures, **self._session.received.thumbs}
         missing = [r for r in rows[:GALLERY] if r.inspection_id not in known]
         if missing and not self._work.busy:
-            self._work.start(translate("history", "pictures"), lambda told: small_pictures(folder, missing, told))
+            self._work.start(
+                translate("history", "pictures"),
+                lambda progress: small_pictures(folder, missing, progress),
+                self._on_pictures,
+            )
 
-    def _on_pictures(self, found: object) -> None:
-        if isinstance(found, tuple):
-            number, overlay = found
-            if self.record.record is not None and self.record.record.inspection_id == number:  # or another one was chosen meanwhile
-                self.record.strip.show_map(overlay)
-        elif isinstance(found, dict):
-            self._pictures |= found
-            self.film.fill(list(self.film.rows.values()), {**self._pictures, **self._session.received.thumbs}, self._reviews())
-        else:
-            self._said.setText(str(found))
+    def _on_pictures(self, found: dict[int, QImage]) -> None:
+        self._pictures |= found
+        pictures = {**self._pictures, **self._session.received.thumbs}
+        self.film.fill(list(self.film.rows.values()), pictures, self._reviews())
+
+    def _on_map(self, made: tuple[int, QImage]) -> None:
+        number, overlay = made
+        shown = self.record.record
+        if shown is not None and shown.inspection_id == number:  # or another one was chosen meanwhile
+            self.record.strip.show_map(overlay)
 
     def _ask_export(self) -> None:
         folder = ask_folder(self, self._session, translate("history", "Folder for the crops of reviewed parts"))
@@ -247,35 +250,37 @@ class HistoryPage(Page):
         """The parts in the list, one row each."""
         folder, numbers = self._session.received.folder, list(self.film.rows)
 
-        def work(told: Told) -> str:
-            entries = _read(folder, numbers, told)
+        def work(progress: Progress) -> str | None:
+            entries = _read(folder, numbers, progress)
             if entries is None:
-                return ""
+                return None
             with replacing(target) as part:  # the dialog has asked
                 problems = list(export(entries, folder, part, "csv"))
             return f"{target}: {len(entries) - len(problems)}"
 
-        self._work.start(translate("history", "table"), work)
+        self._work.start(translate("history", "table"), work, self._said.setText)
 
     def _ask_map(self) -> None:
         record, settings = self.record.record, self._session.received.settings
         if record is not None:
-            self._work.start(translate("history", "defect map"), lambda _: defect_map(settings, record))
+            title = translate("history", "defect map")
+            self._work.start(title, lambda _: defect_map(settings, record), self._on_map)
 
     def export_to(self, target: Path) -> None:
         """Crops of the parts that two people agree on."""
         folder = self._session.received.folder
 
-        def work(told: Told) -> str:
-            entries = _read(folder, [number for number, review in reviews(folder).items() if review.agreed is not None], told)
+        def work(progress: Progress) -> str | None:
+            agreed = [number for number, review in reviews(folder).items() if review.agreed is not None]
+            entries = _read(folder, agreed, progress)
             if entries is None:
-                return ""
-            done = iter(range(len(entries)))
-            problems = list(export(entries, folder, target, "reviewed", lambda: told(next(done, 0), len(entries))))
+                return None
+            done, count = iter(range(len(entries))), len(entries)
+            problems = list(export(entries, folder, target, "reviewed", lambda: progress(next(done, 0), count)))
             parts, left_out = translate("history", "parts"), translate("history", "left out")
             return f"{target}: {len(entries) - len(problems)} {parts}, {len(problems)} {left_out}"
 
-        self._work.start(translate("history", "export"), work)
+        self._work.start(translate("history", "export"), work, self._said.setText)
 
     def close_page(self) -> None:
         """Nothing is left running."""
@@ -283,11 +288,11 @@ class HistoryPage(Page):
         self._work.close_work()
 
 
-def _read(folder: Path, numbers: Sequence[int], told: Told) -> list[Listed] | None:
+def _read(folder: Path, numbers: Sequence[int], progress: Progress) -> list[Listed] | None:
     """Records of these numbers; None if it was cancelled."""
     entries: list[Listed] = []
     for count, number in enumerate(numbers):
-        if not told(count, len(numbers)):
+        if not progress(count, len(numbers)):
             return None
         entries += read_records(folder, Wanted(number=number))
     return entries

@@ -22,7 +22,7 @@ from station.panel.widgets.weld.clock_face import ClockFace
 from station.panel.widgets.weld.pictures import drawn, nok_scores, strip_image
 from station.panel.widgets.weld.strip_view import StripView
 from station.panel.widgets.weld.weld_view import WeldView
-from station.panel.widgets.work import Told, WorkBar
+from station.panel.widgets.work import Progress, WorkBar
 
 AGE_MS = 200
 SIDE_PX, SIDE_SHARE = 380, 0.32
@@ -70,7 +70,6 @@ class LivePage(Page):
         self.show_map.setToolTip(translate("live", "Where the network sees defects in the last NOK part"))
         self.show_map.clicked.connect(self._ask_map)
         self._work = WorkBar()
-        self._work.done.connect(self._on_map)
         self._work.failed.connect(lambda why: self._nok_text.setText(data(why)))
         self._lay_out()
         session.received.status_changed.connect(self._on_status)
@@ -201,12 +200,12 @@ class LivePage(Page):
             return
         record, settings = pinned.part.record, self._session.received.settings
 
-        def work(_told: Told) -> tuple[int, QImage]:
+        def work(_progress: Progress) -> tuple[int, QImage]:
             from station.panel.widgets.weld.kept import defect_map  # only who asks pays for the network
 
             return defect_map(settings, record)
 
-        self._work.start(translate("live", "defect map"), work)
+        self._work.start(translate("live", "defect map"), work, self._on_map)
 
     def _ask_test(self) -> None:
         self._session.account.ask(TakeTestImage(), self._on_test, self)

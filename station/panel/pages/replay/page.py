@@ -19,7 +19,7 @@ from station.panel.widgets.dialogs import ask_folder
 from station.panel.widgets.field import NumberField
 from station.panel.widgets.weld.kept import judged
 from station.panel.widgets.weld.weld_view import Drawn, WeldView
-from station.panel.widgets.work import Told, WorkBar
+from station.panel.widgets.work import Progress, WorkBar
 from station.records import Provenance
 from station.replay.compare import Comparison, compare
 from station.replay.files import Source, sources
@@ -60,8 +60,6 @@ class ReplayPage(Page):
         self.report.clicked.connect(self._ask_report)
         self.only_flips.toggled.connect(self._fill)
         self.table.itemSelectionChanged.connect(self._on_chosen)
-        self._work.done.connect(self._on_done)
-        self._looking.done.connect(self._on_picture)
         for work in (self._work, self._looking):
             work.failed.connect(lambda why: self._problem.setText(data(why)))
         session.account.changed.connect(self._on_user)
@@ -144,26 +142,26 @@ class ReplayPage(Page):
         settings, number = self._session.received.settings, int(self.recipe.currentData())
         path = self._session.received.folder if count is not None else Path(text)
 
-        def work(told: Told) -> Done | None:
-            return _judged(for_recipe(settings, number), path, count, scale, told)
+        def work(progress: Progress) -> Done | None:
+            return _judged(for_recipe(settings, number), path, count, scale, progress)
 
         self._problem.setText("")
-        if self._work.start(translate("replay", "images are judged"), work):
+        if self._work.start(translate("replay", "images are judged"), work, self._on_done):
             self.done = None
             self.said.setText("")
             self.weld.show_weld(None)
             self._fill()
             self._on_user()
 
-    def _on_done(self, found: object) -> None:
-        if isinstance(found, Done):
-            self.done = found
-            self._tell(found)
-            self._fill()
-            self._on_user()
-        elif found is not None:
-            self._problem.setText("")
-            self.said.setText(str(found))
+    def _on_done(self, found: Done) -> None:
+        self.done = found
+        self._summarise(found)
+        self._fill()
+        self._on_user()
+
+    def _on_report(self, page: str) -> None:
+        self._problem.setText("")
+        self.said.setText(page)
 
     def _on_picture(self, seen: tuple[str, Drawn]) -> None:
         name, drawn = seen
@@ -172,7 +170,7 @@ class ReplayPage(Page):
         else:  # another one was chosen meanwhile
             self._on_chosen()
 
-    def _tell(self, found: Done) -> None:
+    def _summarise(self, found: Done) -> None:
         counts = Counter(replayed.verdict for replayed in found.results.values())
         text = translate("replay", "{n} images: {ok} OK, {nok} NOK, {error} not judged").format(
             n=len(found.results), ok=counts[Verdict.OK], nok=counts[Verdict.NOK], error=counts[Verdict.ERROR]
@@ -216,12 +214,12 @@ class ReplayPage(Page):
             return
         path = next(source.path for source in found.sources if source.name == name)
 
-        def work(_told: Told) -> tuple[str, Drawn]:
+        def work(_progress: Progress) -> tuple[str, Drawn]:
             image, inspector = at_scale(read_image(path), found.factor), found.judge[0]
             inspection = inspector.inspect(image)
             return str(name), judged(image, inspection)[0]
 
-        self._looking.start("", work)
+        self._looking.start("", work, self._on_picture)
 
     def _ask_report(self) -> None:
         folder = ask_folder(self, self._session, translate("replay", "folder for the report"))
@@ -234,7 +232,7 @@ class ReplayPage(Page):
         if found is None:
             return
 
-        def work(_told: Told) -> str:
+        def work(_progress: Progress) -> str:
             page = write_page(
                 folder,
                 sources=found.sources,
@@ -247,7 +245,7 @@ class ReplayPage(Page):
             write_json(folder / "replay.json", found.results.values())
             return str(page)
 
-        self._work.start(translate("replay", "report"), work)
+        self._work.start(translate("replay", "report"), work, self._on_report)
 
     def close_page(self) -> None:
         """Nothing is left running."""
@@ -255,19 +253,19 @@ class ReplayPage(Page):
             work.close_work()
 
 
-def _judged(settings: Settings, path: Path, count: int | None, scale_um_per_px: float, told: Told) -> Done | None:
-    """None if it was cancelled. Raises WeldgateError."""
+def _judged(settings: Settings, path: Path, count: int | None, um_per_px: float, progress: Progress) -> Done | None:
+    """Judge the newest `count` images, or all, below a path. Returns None if cancelled. Raises WeldgateError."""
     found = sources([path])
     if count is not None:
         found = found[-count:]
     one = settings.model_copy(update={"model": settings.model.model_copy(update={"threads": 1, "reference_path": None})})
-    judge, factor = load_inspector(one), scale_um_per_px / settings.weld.um_per_px
+    judge, factor = load_inspector(one), um_per_px / settings.weld.um_per_px
     results: dict[str, Replayed] = {}
     problems: list[str] = []
     for replayed in replay(found, one, judge=judge, factor=factor, processes=1, part=None):
         results[replayed.name] = replayed
         problems += [*([replayed.problem] if replayed.problem else []), *replayed.warnings]
-        if not told(len(results), len(found)):
+        if not progress(len(results), len(found)):
             return None
     recorded = any(source.row is not None for source in found)
     comparison = compare(found, results, judge[1]) if recorded else None

@@ -16,7 +16,7 @@ from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState
 from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, Table, label, titled
 from station.panel.widgets.field import NumberField, SegmentLimits
-from station.panel.widgets.work import Told, WorkBar
+from station.panel.widgets.work import Progress, WorkBar
 from station.settings.model import for_recipe
 
 
@@ -90,7 +90,6 @@ class RecipePage(Page):
         self.save.clicked.connect(self._save)
         self.reason.textChanged.connect(self._look)
         self.recipe.currentIndexChanged.connect(self._fill)
-        self._work.done.connect(self._on_done)
         self._work.failed.connect(self.problem.setText)
         session.account.changed.connect(self._on_user)
         session.received.settings_changed.connect(self._on_settings)
@@ -173,19 +172,20 @@ class RecipePage(Page):
         settings = for_recipe(self._session.received.settings, values.recipe)
         thresholds, quality = thresholds_of(values), quality_of(values, settings)
 
-        def work(told: Told) -> tuple[Values, WhatIf, int] | None:
+        def work(progress: Progress) -> tuple[Values, WhatIf, int] | None:
             judge = Classifier(settings.model.path, 1).card.file_hash
-            found = scored_records(folder, values.recipe, judge, told)
+            found = scored_records(folder, values.recipe, judge, progress)
             return None if found is None else (values, what_if(found[0], thresholds, quality), found[1])
 
-        self._work.start(translate("recipe", "scoring the archive again"), work)
+        self._work.start(translate("recipe", "scoring the archive again"), work, self._on_done)
         self._look()
 
-    def _on_done(self, answer: object) -> None:
-        if not isinstance(answer, tuple) or answer[0] != self.values():
+    def _on_done(self, answer: tuple[Values, WhatIf, int]) -> None:
+        values, found, left_out = answer
+        if values != self.values():
             self._look()
             return
-        self._state.asked, found, left_out = answer
+        self._state.asked = values
         for table, flips in ((self.released, found.released), (self.refused, found.refused)):
             rows = [(str(f.inspection_id), f.serial, str(f.before), str(f.after), str(f.segment), f"{f.score:.3f}") for f in flips]
             table.fill(rows)

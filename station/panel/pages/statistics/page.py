@@ -20,7 +20,7 @@ from station.panel.widgets.card import Choice, Table, label, titled
 from station.panel.widgets.charts import Chart
 from station.panel.widgets.dialogs import ask_file
 from station.panel.widgets.weld.clock_face import ClockFace
-from station.panel.widgets.work import Told, WorkBar
+from station.panel.widgets.work import Progress, WorkBar
 from station.records import Record
 from station.settings.model import for_recipe
 
@@ -46,7 +46,6 @@ class StatisticsPage(Page):
             stretch=0,
         )
         self._lay_out()
-        self._work.done.connect(self._on_done)
         self._work.failed.connect(self._problem.setText)
         self.how_many.currentIndexChanged.connect(self.read)
         session.account.changed.connect(self._on_user)
@@ -122,12 +121,10 @@ class StatisticsPage(Page):
     def read(self) -> None:
         """Read the records of the chosen parts, beside the window."""
         folder, limit = self._session.received.folder, int(self.how_many.currentData())
-        self._work.start(translate("statistics", "reading records"), lambda told: summarise(_records(folder, limit, told)))
+        title = translate("statistics", "reading records")
+        self._work.start(title, lambda progress: summarise(_records(folder, limit, progress)), self._show)
 
-    def _on_done(self, summary: object) -> None:
-        if not isinstance(summary, Summary):
-            self._said.setText(str(summary))
-            return
+    def _show(self, summary: Summary) -> None:
         self.summary = summary
         self._problem.setText("" if summary.points else translate("statistics", "no parts yet"))
         self.groups.fill([(g.shift, str(g.recipe), str(g.ok), str(g.nok), str(g.error), f"{g.yield_share:.1%}") for g in summary.groups])
@@ -156,16 +153,16 @@ class StatisticsPage(Page):
         """The chosen parts as one HTML file."""
         folder, limit = self._session.received.folder, int(self.how_many.currentData())
 
-        def work(told: Told) -> str:
+        def work(progress: Progress) -> str | None:
             entries = []
             for count, entry in enumerate(read_records(folder, Wanted(newest_first=True, limit=limit))):
-                if not told(count, limit):
-                    return ""
+                if not progress(count, limit):
+                    return None
                 entries.append(entry)
             target.write_text(report(entries[::-1], folder, "weldgate"), encoding="utf-8")
             return str(target)
 
-        self._work.start(translate("statistics", "report"), work)
+        self._work.start(translate("statistics", "report"), work, self._said.setText)
 
     def close_page(self) -> None:
         """Nothing is left running."""
@@ -173,10 +170,10 @@ class StatisticsPage(Page):
         self._work.close_work()
 
 
-def _records(folder: Path, limit: int, told: Told) -> Iterator[Record]:
+def _records(folder: Path, limit: int, progress: Progress) -> Iterator[Record]:
     rows = find(folder, Wanted(newest_first=True, limit=limit)) if (folder / INDEX).exists() else []
     for count, row in enumerate(rows):
-        if not told(count, len(rows)):
+        if not progress(count, len(rows)):
             return
         record, _ = read_words(folder, row)
         if record is not None:
