@@ -25,7 +25,8 @@ from station.domain import Frame, Origin
 from station.files.image import read_image
 from station.inspection.loading import prepare
 from station.panel.app import open_window
-from station.panel.window import PAGES, Window
+from station.panel.pages.table import PAGES
+from station.panel.window import Window
 from station.plc.map.registers import (
     COMMAND_WORDS,
     STATUS_START,
@@ -86,13 +87,13 @@ def soak(folder: Path, parts: int) -> list[Level]:
             if number % 10 == 0:
                 publisher.show(replace(events[2], inspection_id=number))
             if number % 40 == 0:
-                window.go(number // 40 % len(PAGES))
+                window.go(PAGES[number // 40 % len(PAGES)].key)
             if number % 10 == 0:
                 _live(30)
             if number % (parts // ROUNDS) == 0:
                 window.speak("de" if window.session.received.parts and number // (parts // ROUNDS) % 2 else "en")
-                for index in range(len(PAGES)):
-                    window.go(index)
+                for info in PAGES:
+                    window.go(info.key)
                 _until_heard(window, number)
                 levels.append(Level.now())
     finally:

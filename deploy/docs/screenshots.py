@@ -28,25 +28,26 @@ from station.journal.review_writer import give
 from station.journal.reviews import Opinion
 from station.journal.users import Level
 from station.panel.app import open_window
+from station.panel.pages.table import PageKey
 from station.panel.window import Window
 from station.plc.simulated.line import SimulatedLine
 from synth.camera.feed import Feed
 
 PARTS = 12
-VIEWS: tuple[tuple[str, int, int], ...] = (
-    ("live", 0, 0),
-    ("live-segment", 0, 0),
-    ("history", 1, 0),
-    ("statistics", 2, 0),
-    ("line", 3, 0),
-    ("alarms", 4, 0),
-    ("setup-login", 5, 0),
-    ("setup-camera", 5, 1),
-    ("setup-recipe", 5, 2),
-    ("setup-masters", 5, 3),
-    ("setup-users", 5, 4),
-    ("setup-journal", 5, 5),
-    ("replay", 6, 0),
+VIEWS: tuple[tuple[str, PageKey, int], ...] = (
+    ("live", PageKey.LIVE, 0),
+    ("live-segment", PageKey.LIVE, 0),
+    ("history", PageKey.HISTORY, 0),
+    ("statistics", PageKey.STATISTICS, 0),
+    ("line", PageKey.LINE, 0),
+    ("alarms", PageKey.ALARMS, 0),
+    ("setup-login", PageKey.SETUP, 0),
+    ("setup-camera", PageKey.SETUP, 1),
+    ("setup-recipe", PageKey.SETUP, 2),
+    ("setup-masters", PageKey.SETUP, 3),
+    ("setup-users", PageKey.SETUP, 4),
+    ("setup-journal", PageKey.SETUP, 5),
+    ("replay", PageKey.REPLAY, 0),
 )
 
 
@@ -139,7 +140,7 @@ def _reviews(window: Window) -> None:
         give(folder, "Ada Admin", may_second=True, inspection_id=number, verdict="NOK", opinion=Opinion.RIGHT)
 
 
-def _show(window: Window, view: str, page: int, tab: int) -> None:
+def _show(window: Window, view: str, page: PageKey, tab: int) -> None:
     """Bring a page to where it has something to show."""
     window.go(page)
     session = window.session
@@ -147,7 +148,7 @@ def _show(window: Window, view: str, page: int, tab: int) -> None:
         session.account.log_in("Ada Admin", "1234", lambda _: None)
         _wait(lambda: session.account.user is not None)
     shown = window.page
-    if page == 5:
+    if page is PageKey.SETUP:
         shown.tabs.setCurrentIndex(tab)  # type: ignore[attr-defined]
     if view == "history":
         shown.fields.verdict.setCurrentIndex(2)  # type: ignore[attr-defined]

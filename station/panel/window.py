@@ -1,7 +1,7 @@
-"""The shell: header, a button for each page, the page.
+"""The operator's window: header, a button for each page, the page.
 
-A page is made when it is first looked at, so that the window opens fast; language and theme are changed by making pages anew from
-the session.
+A page is made when it is first shown, so that the window opens fast. Language and theme are changed by making the pages
+again from the session.
 """
 
 from collections.abc import Callable
@@ -23,8 +23,8 @@ from PySide6.QtWidgets import (
 from station.domain import Origin
 from station.panel.look import theme, words
 from station.panel.look.words import data, translate
-from station.panel.pages.live.page import LivePage
 from station.panel.pages.page import Page
+from station.panel.pages.table import PAGES, PageInfo, PageKey
 from station.panel.session.session import Session
 from station.panel.widgets.card import label, scrolled
 from station.panel.widgets.keys import Keys
@@ -34,47 +34,8 @@ AGE_MS = 500
 NAV_PX, HEADER_PX = 170, 56
 
 
-def _history(session: Session) -> Page:
-    from station.panel.pages.history.page import HistoryPage
-
-    return HistoryPage(session)
-
-
-def _statistics(session: Session) -> Page:
-    from station.panel.pages.statistics.page import StatisticsPage
-
-    return StatisticsPage(session)
-
-
-def _line(session: Session) -> Page:
-    from station.panel.pages.line.page import LinePage
-
-    return LinePage(session)
-
-
-def _alarms(session: Session) -> Page:
-    from station.panel.pages.alarms.page import AlarmsPage
-
-    return AlarmsPage(session)
-
-
-def _setup(session: Session) -> Page:
-    from station.panel.pages.setup.page import SetupPage
-
-    return SetupPage(session)
-
-
-def _replay(session: Session) -> Page:
-    from station.panel.pages.replay.page import ReplayPage
-
-    return ReplayPage(session)
-
-
-PAGES: tuple[Callable[[Session], Page], ...] = (LivePage, _history, _statistics, _line, _alarms, _setup, _replay)
-
-
 class Window(QMainWindow):
-    """The operator's window."""
+    """Shows one page at a time; knows all through the session alone."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -82,50 +43,35 @@ class Window(QMainWindow):
         self.setWindowTitle("weldgate")
         self.setMinimumSize(1180, 720)
         self.resize(1280, 800)
-        self._pages: dict[int, Page] = {}
-        """Those that were looked at."""
-        self._build(0)
+        self._pages: dict[PageKey, Page] = {}
+        """Pages that were shown."""
+        self._build(PAGES[0].key)
         session.received.status_changed.connect(self._on_status)
         session.account.changed.connect(self._on_user)
         session.part_wanted.connect(self._open_part)
         self._ageing = QTimer(self)
         self._ageing.timeout.connect(self._on_status)
         self._ageing.start(AGE_MS)
-        for index in range(len(PAGES)):
-            QShortcut(QKeySequence(f"F{index + 1}"), self, lambda i=index: self.go(i))
+        for number, info in enumerate(PAGES, 1):
+            QShortcut(QKeySequence(f"F{number}"), self, lambda key=info.key: self.go(key))
 
-    def _build(self, chosen: int) -> None:
-        """All widgets in the language and theme in use."""
-        self._names = [
-            translate("window", "Live"),
-            translate("window", "History"),
-            translate("window", "Statistics"),
-            translate("window", "Line"),
-            translate("window", "Alarms"),
-            translate("window", "Setup"),
-            translate("window", "Replay"),
-        ]
-        self._stack = QStackedWidget()
-        nav = QFrame()
-        self._buttons = QButtonGroup(nav)
+    def _build(self, chosen: PageKey) -> None:
+        """Make all widgets in the language and theme in use, and show a page."""
+        self._stack, nav = QStackedWidget(), QFrame()
         nav.setObjectName("nav")
         nav.setFixedWidth(NAV_PX)
         column = QVBoxLayout(nav)
         column.setContentsMargins(0, 6, 0, 6)
         column.setSpacing(0)
-        self._places: list[QStackedWidget] = []
-        for index, name in enumerate(self._names):
-            button = QPushButton(name)
-            button.setObjectName("nav")
-            button.setCheckable(True)
-            button.setToolTip(f"F{index + 1}")
-            self._buttons.addButton(button, index)
+        self._buttons, self._places = dict[PageKey, QPushButton](), dict[PageKey, QStackedWidget]()
+        group = QButtonGroup(nav)
+        for number, info in enumerate(PAGES, 1):
+            button, place = self._button(info, number), QStackedWidget()
+            group.addButton(button)
             column.addWidget(button)
-            place = QStackedWidget()
-            self._places.append(place)
             self._stack.addWidget(place)
+            self._buttons[info.key], self._places[info.key] = button, place
         column.addStretch(1)
-        self._buttons.idClicked.connect(self.go)
         body = QWidget()
         rows = QVBoxLayout(body)
         rows.setContentsMargins(0, 0, 0, 0)
@@ -143,6 +89,14 @@ class Window(QMainWindow):
         self._on_user()
         self._on_status()
 
+    def _button(self, info: PageInfo, number: int) -> QPushButton:
+        button = QPushButton(info.title())
+        button.setObjectName("nav")
+        button.setCheckable(True)
+        button.setToolTip(f"F{number}")
+        button.clicked.connect(lambda: self.go(info.key))
+        return button
+
     def _header(self) -> QFrame:
         header = QFrame()
         header.setObjectName("header")
@@ -151,9 +105,9 @@ class Window(QMainWindow):
         row.setContentsMargins(14, 4, 10, 4)
         self._badge, self._alarm, self._user = label("", "badge"), QPushButton(""), QPushButton("")
         self._alarm.setObjectName("flat")
-        self._alarm.clicked.connect(lambda: self.go(4))
+        self._alarm.clicked.connect(lambda: self.go(PageKey.ALARMS))
         self._user.setObjectName("flat")
-        self._user.clicked.connect(lambda: self.go(5))
+        self._user.clicked.connect(lambda: self.go(PageKey.SETUP))
         row.addWidget(label("weldgate", "title"))
         row.addWidget(self._badge)
         row.addWidget(self._alarm)
@@ -173,59 +127,66 @@ class Window(QMainWindow):
             row.addWidget(button)
         return header
 
-    def _type(self, wanted: bool) -> None:
-        """Made when asked for: most windows have a keyboard."""
-        if wanted:
+    def _type(self, on: bool) -> None:
+        """Show or remove the keys on the screen; they are made on request, for most stations have a keyboard."""
+        if on:
             self._foot.addWidget(Keys())
         elif (item := self._foot.takeAt(0)) is not None and (keys := item.widget()) is not None:
             keys.deleteLater()
 
     @property
+    def shown(self) -> PageKey:
+        """Key of the page that is shown."""
+        return PAGES[self._stack.currentIndex()].key
+
+    @property
     def page(self) -> Page:
         """The page that is shown."""
-        return self._pages[self._stack.currentIndex()]
+        return self._pages[self.shown]
 
-    def go(self, index: int) -> None:
-        """Show a page: 0 live, 1 history, 2 statistics, 3 line, 4 alarms, 5 setup, 6 replay."""
-        if index not in self._pages:
-            self._pages[index] = PAGES[index](self.session)
-            self._places[index].addWidget(scrolled(self._pages[index]))
-        self._stack.setCurrentIndex(index)
-        self._buttons.button(index).setChecked(True)
+    def go(self, key: PageKey) -> None:
+        """Show a page."""
+        if key not in self._pages:
+            load = next(info.load for info in PAGES if info.key is key)
+            self._pages[key] = load(self.session)
+            self._places[key].addWidget(scrolled(self._pages[key]))
+        self._stack.setCurrentWidget(self._places[key])
+        self._buttons[key].setChecked(True)
 
     def _open_part(self, number: int) -> None:
-        self.go(1)
-        self.page.open_part(number)  # type: ignore[attr-defined]
+        self.go(PageKey.HISTORY)
+        self.page.open_part(number)
 
     def speak(self, language: str) -> None:
-        """Another language, at once."""
-        self._anew(lambda: words.use(language))
+        """Show everything in another language, at once."""
+        self._rebuild(lambda: words.use(language))
 
     def dress(self, name: str) -> None:
-        """Another theme, at once."""
-        self._anew(lambda: theme.use(name))
+        """Show everything in another theme, at once."""
+        self._rebuild(lambda: theme.use(name))
 
-    def _anew(self, change: Callable[[], None]) -> None:
-        chosen = self._stack.currentIndex()
+    def _rebuild(self, change: Callable[[], None]) -> None:
+        shown = self.shown
         self._close_pages()
         change()
-        self._build(chosen)
+        self._build(shown)
 
     def _on_status(self) -> None:
         session, status = self.session, self.session.received.status
         self._badge.setVisible(status is not None and status.origin is not Origin.CAMERA)
         simulated = status is not None and status.origin is Origin.SIMULATED
         self._badge.setText(translate("window", "SIMULATED CAMERA") if simulated else translate("window", "REPLAY"))
-        lasting = status.alarms if status is not None and session.received.engine_there else ()
+        active = status.alarms if status is not None and session.received.engine_there else ()
         if not session.received.engine_there:
             text = translate("window", "no word from the engine; it is connected again by itself")
         else:
-            text = data(TEXTS[lasting[0]].cause) if lasting else ""
-        more = f" (+{len(lasting) - 1})" if len(lasting) > 1 else ""
+            text = data(TEXTS[active[0]].cause) if active else ""
+        more = f" (+{len(active) - 1})" if len(active) > 1 else ""
         self._alarm.setText(f"⚠ {text}{more}" if text else "")
         self._alarm.setVisible(bool(text))
-        alarms = f"{self._names[4]} ({len(lasting)})" if lasting else self._names[4]
-        self._buttons.button(4).setText(alarms)
+        count = f" ({len(active)})" if active else ""
+        title = next(info.title() for info in PAGES if info.key is PageKey.ALARMS)
+        self._buttons[PageKey.ALARMS].setText(f"{title}{count}")
 
     def _on_user(self) -> None:
         user = self.session.account.user
@@ -237,7 +198,7 @@ class Window(QMainWindow):
                 app.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        """Any touch or key keeps who is logged in."""
+        """Report any touch or key, which keeps a person logged in."""
         if event.type() in (QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.TouchBegin):
             self.session.account.touched()
         return super().eventFilter(watched, event)
@@ -250,7 +211,7 @@ class Window(QMainWindow):
         self._pages = {}
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
-        """Stop timers, work and channel."""
+        """Stop timers, work and channel when the window is closed."""
         app = QApplication.instance()
         if app is not None:
             app.removeEventFilter(self)

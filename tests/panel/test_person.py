@@ -24,6 +24,7 @@ from station.panel.pages.history.page import HistoryPage
 from station.panel.pages.live.page import LivePage
 from station.panel.pages.replay.page import ReplayPage
 from station.panel.pages.setup.page import SetupPage
+from station.panel.pages.table import PageKey
 from station.panel.window import HEADER_PX, NAV_PX, Window
 from station.plc.map.alarms import Alarm
 from station.plc.map.registers import VerdictCode
@@ -84,7 +85,7 @@ def window(station: tuple[Path, Line], qtbot: QtBot) -> Iterator[Window]:
 
 def log_in(window: Window, qtbot: QtBot, name: str, pin: str) -> SetupPage:
     """On the page Setup, by keys."""
-    window.go(5)
+    window.go(PageKey.SETUP)
     setup = window.page
     assert isinstance(setup, SetupPage)
     setup.show_tab(setup.login)
@@ -113,7 +114,7 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     save_user(folder, "Ada", "Quentin", Level.QUALITY, "2345")
 
     # find a NOK, look at it, review it, the second person too
-    window.go(1)
+    window.go(PageKey.HISTORY)
     history = window.page
     assert isinstance(history, HistoryPage)
     history.fields.since.setCurrentText("last hour")
@@ -197,7 +198,7 @@ def test_a_record_whose_picture_is_gone_is_shown_as_such(station: tuple[Path, Li
     _, line = station
     line.passes(qtbot, 1)
     next(window.session.received.folder.glob("????-??-??/*.png")).unlink()
-    window.go(1)
+    window.go(PageKey.HISTORY)
     history = window.page
     assert isinstance(history, HistoryPage)
     history.search()
@@ -228,7 +229,7 @@ def test_five_wrong_pins_are_said_and_a_level_holds(window: Window, qtbot: QtBot
 def test_service_mode_from_the_line_page_is_told_to_the_plc_and_ends_with_the_login(window: Window, qtbot: QtBot) -> None:
     session = window.session
     log_in(window, qtbot, "Ada", "1234")
-    window.go(3)
+    window.go(PageKey.LINE)
     page = window.page
     qtbot.mouseClick(page.service, LEFT)  # type: ignore[attr-defined]
     qtbot.waitUntil(lambda: session.received.status is not None and session.received.status.service == "Ada", timeout=10_000)
@@ -271,7 +272,7 @@ def test_recorded_parts_are_judged_again_in_the_window(station: tuple[Path, Line
     _, line = station
     answers = line.passes(qtbot, 4)
     log_in(window, qtbot, "Ada", "1234")
-    window.go(6)
+    window.go(PageKey.REPLAY)
     page = window.page
     assert isinstance(page, ReplayPage)
     qtbot.mouseClick(page.judge, LEFT)
@@ -303,7 +304,7 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
     answers = line.passes(qtbot, 4)
     nok = [a.inspection_id for a in answers if a.verdict is VerdictCode.NOK]
     log_in(window, qtbot, "Ada", "1234")
-    window.go(1)
+    window.go(PageKey.HISTORY)
     page = window.page
     assert isinstance(page, HistoryPage)
     fields = page.fields

@@ -23,6 +23,7 @@ from station.panel.pages.live.page import LivePage
 from station.panel.pages.setup.page import SetupPage
 from station.panel.pages.setup.recipe import RecipePage
 from station.panel.pages.statistics.page import StatisticsPage
+from station.panel.pages.table import PageKey
 from station.panel.session.pending import NO_CONNECTION
 from station.panel.session.session import Session
 from station.panel.window import Window
@@ -44,7 +45,7 @@ def told(session: Session, *kinds: Kind) -> list[Entry]:
 
 
 def recipe_page(window: Window) -> RecipePage:
-    window.go(5)
+    window.go(PageKey.SETUP)
     assert isinstance(window.page, SetupPage)
     window.page.show_tab(window.page.recipe)
     return window.page.recipe
@@ -83,7 +84,7 @@ def test_the_engine_ends_a_login_and_the_window_says_so(window: Window, desk: De
 
 
 def test_without_an_engine_nobody_logs_in_and_it_is_said(window: Window, qtbot: QtBot) -> None:
-    window.go(5)
+    window.go(PageKey.SETUP)
     page = window.page
     assert isinstance(page, SetupPage)
     page.login.name.setEditText("Ada")
@@ -99,7 +100,7 @@ def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
 ) -> None:
     monkeypatch.setattr("station.panel.session.pending.PATIENCE_S", 0.5)
     log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
-    window.go(2)
+    window.go(PageKey.STATISTICS)
     page = window.page
     assert isinstance(page, StatisticsPage)
     page.zero.click()
@@ -116,7 +117,7 @@ def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
 
 def test_the_bit_set_by_hand_stays_in_sight_in_another_language(window: Window, desk: Desk, qtbot: QtBot) -> None:
     log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
-    window.go(3)
+    window.go(PageKey.LINE)
     hold(window.session, qtbot, HoldService(bit=int(Status.BUSY)))
     window.speak("de")
     page = window.page
@@ -125,7 +126,7 @@ def test_the_bit_set_by_hand_stays_in_sight_in_another_language(window: Window, 
 
 
 def test_the_line_page_of_an_absent_engine_claims_nothing(window: Window) -> None:
-    window.go(3)
+    window.go(PageKey.LINE)
     page = window.page
     assert isinstance(page, LinePage)
     window.session.received._on_status(status())
@@ -201,7 +202,7 @@ def test_a_change_is_waited_for_until_the_station_uses_it_or_says_why_not(window
 def test_the_chosen_alarm_stays_chosen_when_another_comes(window: Window, desk: Desk, qtbot: QtBot) -> None:
     session = window.session
     append(session.received.folder, Kind.ALARM, "station", f"16#{int(Alarm.CAMERA_LOST):04X}")
-    window.go(4)
+    window.go(PageKey.ALARMS)
     page = window.page
     assert isinstance(page, AlarmsPage)
     page.table.selectRow(0)
@@ -232,7 +233,7 @@ def test_what_the_engine_refuses_is_said_on_the_page(window: Window, desk: Desk,
 
 def test_an_answer_to_a_page_that_was_made_again_is_dropped(window: Window, desk: Desk, qtbot: QtBot) -> None:
     log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
-    window.go(2)
+    window.go(PageKey.STATISTICS)
     page = window.page
     assert isinstance(page, StatisticsPage)
     page.zero.click()

@@ -17,8 +17,9 @@ from station.panel.look import theme
 from station.panel.pages.history.page import HistoryPage
 from station.panel.pages.live.page import LivePage
 from station.panel.pages.setup.page import SetupPage
+from station.panel.pages.table import PAGES, PageKey
 from station.panel.widgets.keys import Keys
-from station.panel.window import HEADER_PX, NAV_PX, PAGES, Window
+from station.panel.window import HEADER_PX, NAV_PX, Window
 from station.plc.map.alarms import Alarm
 from station.plc.map.registers import Offline
 from station.plc.port import Counts
@@ -32,7 +33,7 @@ TABS_PX = 80
 
 
 def live(window: Window) -> LivePage:
-    window.go(0)
+    window.go(PageKey.LIVE)
     page = window.page
     assert isinstance(page, LivePage)
     return page
@@ -59,7 +60,7 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
 
     qtbot.waitUntil(told, timeout=5000)
     assert window._badge.text() == "SIMULATED CAMERA"
-    assert window._buttons.button(4).text() == "Alarms (1)"
+    assert window._buttons[PageKey.ALARMS].text() == "Alarms (1)"
     assert live(window).clock.counts[3] >= 1
     picture = window.grab().toImage()
     colors = {picture.pixelColor(x, y).name() for x in range(0, picture.width(), 4) for y in range(0, picture.height(), 4)}
@@ -119,10 +120,11 @@ def test_a_restarted_engine_needs_no_new_panel(window: Window, settings: Channel
 def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Window, qtbot: QtBot) -> None:
     window.session.received._on_status(status(counts=Counts(7, 2, 1)))
     window.session.received._on_parts([part(nok_inspection(), 5)])
-    window.go(2)
+    window.go(PageKey.STATISTICS)
     window.speak("de")
-    assert [window._buttons.button(i).text() for i in range(6)] == ["Live", "Verlauf", "Statistik", "Linie", "Alarme", "Einrichten"]
-    assert window._stack.currentIndex() == 2
+    titles = [button.text() for button in window._buttons.values()]
+    assert titles == ["Live", "Verlauf", "Statistik", "Linie", "Alarme", "Einrichten", "Wiedergabe"]
+    assert window.shown is PageKey.STATISTICS
     window.dress("light")
     assert live(window).facts.values["parts"].text() == "10"
     assert live(window).facts.values["part"].text() == "5"
@@ -136,13 +138,13 @@ def test_every_page_fits_the_screen_in_both_languages(window: Window, size: tupl
     window.resize(*size)
     for language in ("en", "de"):
         window.speak(language)
-        for index in range(len(PAGES)):
-            window.go(index)
+        for info in PAGES:
+            window.go(info.key)
             page = window.page
             hint = page.minimumSizeHint()
             assert hint.width() <= size[0] - NAV_PX, page
             assert hint.height() <= size[1] - HEADER_PX, page
-        window.go(5)
+        window.go(PageKey.SETUP)
         setup = window.page
         assert isinstance(setup, SetupPage)
         for tab in (setup.login, setup.camera, setup.recipe, setup.masters, setup.people, setup.journal):
@@ -152,14 +154,28 @@ def test_every_page_fits_the_screen_in_both_languages(window: Window, size: tupl
 
 def test_keys_lead_to_pages(window: Window, qtbot: QtBot) -> None:
     window.activateWindow()
-    for index, key in enumerate((Qt.Key.Key_F1, Qt.Key.Key_F2, Qt.Key.Key_F3)):
-        qtbot.keyClick(window, key)
-        assert window._stack.currentIndex() == index
+    for number, info in enumerate(PAGES):
+        qtbot.keyClick(window, Qt.Key(Qt.Key.Key_F1.value + number))
+        assert window.shown is info.key
+        assert window._buttons[info.key].isChecked()
+
+
+def test_each_page_has_one_line_in_the_table_and_its_button_leads_to_it(window: Window, qtbot: QtBot) -> None:
+    assert [info.key for info in PAGES] == list(PageKey)
+    for key, button in window._buttons.items():
+        qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+        assert window.shown is key
+    qtbot.mouseClick(window._user, Qt.MouseButton.LeftButton)
+    assert window.shown is PageKey.SETUP
+    window._alarm.click()
+    assert window.shown is PageKey.ALARMS
+    window.session.part_wanted.emit(1)
+    assert window.shown is PageKey.HISTORY
 
 
 def test_keys_on_the_screen_write_where_the_cursor_stands(window: Window, qtbot: QtBot) -> None:
     window.speak("de")
-    window.go(1)
+    window.go(PageKey.HISTORY)
     page = window.page
     assert isinstance(page, HistoryPage)
     window.activateWindow()
@@ -199,8 +215,8 @@ def test_pages_built_anew_leave_none_behind(window: Window, qtbot: QtBot) -> Non
     def look_at_all() -> None:
         for language in ("de", "en"):
             window.speak(language)
-            for index in range(len(PAGES)):
-                window.go(index)
+            for info in PAGES:
+                window.go(info.key)
 
     look_at_all()
     before = widgets()

@@ -1,10 +1,13 @@
-"""What a page of the window is."""
+"""What all pages of the window have in common."""
 
 from PySide6.QtWidgets import QWidget
 
 
 class Page(QWidget):
-    """Made from the session, and made anew whenever language or theme change."""
+    """A page; made from the session, and made again whenever language or theme change."""
+
+    def open_part(self, number: int) -> None:
+        """Show this part, on a page that shows parts of the archive."""
 
     def close_page(self) -> None:
-        """Nothing is left running."""
+        """Stop timers and work; the page is not used afterwards."""
