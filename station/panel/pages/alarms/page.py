@@ -2,14 +2,13 @@
 
 from datetime import datetime
 
-from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.channel.requests import Acknowledge, Answer
 from station.errors import RecordError
 from station.journal.journal import Kind, entries
 from station.panel.look.words import data, translate
-from station.panel.pages.page import Page
+from station.panel.pages.page import FollowingPage
 from station.panel.session.session import Session
 from station.panel.widgets.card import Table, label, titled
 from station.plc.map.alarms import TEXTS
@@ -18,7 +17,7 @@ SHOWN = 200
 REFRESH_MS = 2000
 
 
-class AlarmsPage(Page):
+class AlarmsPage(FollowingPage):
     """Follows the journal."""
 
     def __init__(self, session: Session) -> None:
@@ -50,14 +49,7 @@ class AlarmsPage(Page):
         column.addWidget(self.table, 1)
         column.addWidget(titled(translate("alarms", "what to do"), self.action))
         column.addLayout(row)
-        self._timer = QTimer(self)
-        self._timer.timeout.connect(self._when_seen)
-        self._timer.start(REFRESH_MS)
-        self.refresh()
-
-    def _when_seen(self) -> None:
-        if self.isVisible():
-            self.refresh()
+        self.follow(REFRESH_MS)
 
     def refresh(self) -> None:
         """Read the journal again."""
@@ -112,10 +104,6 @@ class AlarmsPage(Page):
         self.acknowledge.setEnabled(True)
         self.refresh()
         self._problem.setText(data(answer.refusal) if answer.refusal else "")
-
-    def close_page(self) -> None:
-        """Stop following."""
-        self._timer.stop()
 
 
 def _local(utc: str) -> str:

@@ -2,13 +2,12 @@
 
 from datetime import datetime
 
-from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout
 
 from station.errors import RecordError
 from station.journal.journal import Kind, entries
 from station.panel.look.words import data, translate
-from station.panel.pages.page import Page
+from station.panel.pages.page import FollowingPage
 from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, Table, label
 
@@ -16,7 +15,7 @@ SHOWN = 500
 REFRESH_MS = 2000
 
 
-class JournalPage(Page):
+class JournalPage(FollowingPage):
     """Follows the journal."""
 
     def __init__(self, session: Session) -> None:
@@ -47,14 +46,7 @@ class JournalPage(Page):
         column.addLayout(row)
         column.addWidget(self.table, 1)
         self.kind.currentIndexChanged.connect(self.refresh)
-        self._timer = QTimer(self)
-        self._timer.timeout.connect(self._when_seen)
-        self._timer.start(REFRESH_MS)
-        self.refresh()
-
-    def _when_seen(self) -> None:
-        if self.isVisible():
-            self.refresh()
+        self.follow(REFRESH_MS)
 
     def refresh(self) -> None:
         """Read it again."""
@@ -82,10 +74,6 @@ class JournalPage(Page):
                 )
             )
         self.table.fill(rows)
-
-    def close_page(self) -> None:
-        """Stop following."""
-        self._timer.stop()
 
 
 def _said(after: str) -> str:

@@ -2,7 +2,6 @@
 
 from datetime import UTC, datetime
 
-from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.archive.reader import Row, Wanted, find
@@ -11,7 +10,7 @@ from station.domain import Purpose
 from station.errors import RecordError
 from station.journal.users import Level
 from station.panel.look.words import data, translate
-from station.panel.pages.page import Page
+from station.panel.pages.page import FollowingPage
 from station.panel.pages.setup.masters_table import MasterState, master_rows
 from station.panel.session.session import Session
 from station.panel.widgets.card import Table, label, titled
@@ -20,7 +19,7 @@ REFRESH_MS = 1500
 LOG = 200
 
 
-class MastersPage(Page):
+class MastersPage(FollowingPage):
     """Follows the archive."""
 
     def __init__(self, session: Session) -> None:
@@ -60,15 +59,8 @@ class MastersPage(Page):
         column.addLayout(row)
         column.addWidget(self.problem)
         column.addWidget(titled(translate("masters", "log of the checks"), self.log), 1)
-        self._timer = QTimer(self)
-        self._timer.timeout.connect(self._when_seen)
-        self._timer.start(REFRESH_MS)
         session.account.changed.connect(self.refresh)
-        self.refresh()
-
-    def _when_seen(self) -> None:
-        if self.isVisible():
-            self.refresh()
+        self.follow(REFRESH_MS)
 
     def refresh(self) -> None:
         """Read the checks again."""
@@ -106,10 +98,6 @@ class MastersPage(Page):
         self.refresh()
         if not answer.done:
             self.problem.setText(data(answer.refusal))
-
-    def close_page(self) -> None:
-        """Stop following."""
-        self._timer.stop()
 
 
 def _local(at: datetime | None) -> str:
