@@ -25,21 +25,21 @@ from station.settings.model import Settings, for_images, for_recipe
 def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     """Run the command and return its exit code. Raises WeldgateError.
 
-    The code is 0, or 1 if an image could not be inspected or a record is judged otherwise by the networks and
-    limits that made it.
+    The code is 0, or 1 if an image could not be inspected or a record is judged differently by the networks
+    and limits that made it.
     """
     found = sources(arguments.paths)
     settings = _settings(arguments, shipped)
     um_per_px = settings.weld.um_per_px if arguments.um_per_px is None else arguments.um_per_px
     if not 1 <= um_per_px <= 200:
-        raise SettingsError(f"--um-per-px is {um_per_px}; 1 to 200 is allowed")
+        raise SettingsError(f"the scale must be 1 to 200 µm/px: --um-per-px {um_per_px:g}")
     processes = os.cpu_count() or 1 if arguments.processes is None else arguments.processes
     if not 1 <= processes <= 256:
-        raise SettingsError(f"--processes is {processes}; 1 to 256 is allowed")
+        raise SettingsError(f"the number of processes must be 1 to 256: --processes {processes}")
     truth = None if arguments.truth is None else read_truth(arguments.truth)
     for target in (arguments.json, arguments.csv):
         if target is not None and (target.is_dir() or not os.access(target.resolve().parent, os.W_OK)):
-            raise SettingsError(f"{target}: cannot be written there; name a file in a writable folder")
+            raise SettingsError(f"results cannot be written: {target}. Name a file in a writable folder")
     part = None if arguments.json is None else arguments.json.with_name(arguments.json.name + ".part")
     judge = load_inspector(settings)
     factor = um_per_px / settings.weld.um_per_px
@@ -66,7 +66,8 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     if comparison is not None:
         print("\n".join(comparison.lines()))
         for name in comparison.not_alike:
-            print(f"weldgate: {name}: the same networks and limits judge it otherwise than on the line", file=sys.stderr)
+            line = f"{name}: differs from its record, although networks and limits are the same"
+            print(f"weldgate: {line}", file=sys.stderr)
         for problem in comparison.problems:
             print(f"weldgate: {problem}", file=sys.stderr)
         bad += len(comparison.not_alike) + len(comparison.problems)

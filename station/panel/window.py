@@ -1,7 +1,7 @@
 """The operator's window: header, a button for each page, the page.
 
-A page is made when it is first shown, so that the window opens fast. Language and theme are changed by making the pages
-again from the session.
+A page is made when it is first shown, so that the window opens fast. Language and theme are changed by making
+the pages again from the session.
 """
 
 from collections.abc import Callable
@@ -128,7 +128,7 @@ class Window(QMainWindow):
         return header
 
     def _type(self, on: bool) -> None:
-        """Show or remove the keys on the screen; they are made on request, for most stations have a keyboard."""
+        """Show or remove the keys on the screen; they are made on request: most stations have a keyboard."""
         if on:
             self._foot.addWidget(Keys())
         elif (item := self._foot.takeAt(0)) is not None and (keys := item.widget()) is not None:
@@ -178,7 +178,7 @@ class Window(QMainWindow):
         self._badge.setText(translate("window", "SIMULATED CAMERA") if simulated else translate("window", "REPLAY"))
         active = status.alarms if status is not None and session.received.engine_there else ()
         if not session.received.engine_there:
-            text = translate("window", "no word from the engine; it is connected again by itself")
+            text = translate("window", "no connection to the engine; the window reconnects automatically")
         else:
             text = data(TEXTS[active[0]].cause) if active else ""
         more = f" (+{len(active) - 1})" if len(active) > 1 else ""

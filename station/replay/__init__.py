@@ -1,1 +1,1 @@
-"""Recorded images judged again with the line's own code: on all cores, resumable, compared with what the line said."""
+"""Judges recorded images again with the line's own code: on all cores, resumable, compared with records."""

@@ -27,8 +27,8 @@ def sources(paths: Iterable[Path]) -> list[Source]:
     """Return the images among `paths`.
 
     Folders are searched all the way down in the order of names; links to folders are not followed. An archive
-    gives the frames of its records. A file that is found twice is judged once. Raises ImageError if a path does not
-    exist or no image is found, RecordError if an archive cannot be read.
+    gives the frames of its records. A file that is found twice is judged once. Raises ImageError if a path
+    does not exist or no image is found, RecordError if an archive cannot be read.
     """
     found: dict[Path, tuple[Path, Path | None, Row | None]] = {}
     for path in paths:
@@ -42,9 +42,10 @@ def sources(paths: Iterable[Path]) -> list[Source]:
         elif path.exists() or path.is_symlink():
             found.setdefault(_real(path), (path, None, None))
         else:
-            raise ImageError(f"{path}: no such file or folder")
+            raise ImageError(f"no such file or folder: {path}")
     if not found:
-        raise ImageError(f"{', '.join(str(p) for p in paths)}: no images found; PNG, BMP, TIFF and JPEG are read")
+        places = ", ".join(str(path) for path in paths)
+        raise ImageError(f"no images found: {places}. Name PNG, BMP, TIFF or JPEG files or their folders")
     base = Path(os.path.commonpath([path.absolute().parent for path, _, _ in found.values()]))
     names = (path.absolute().relative_to(base).as_posix() for path, _, _ in found.values())
     return [Source(name, *place) for name, place in zip(names, found.values(), strict=True)]

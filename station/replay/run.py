@@ -86,7 +86,8 @@ def _pooled(todo: list[Marked], settings: Settings, factor: float, processes: in
             for mark, future in waiting:
                 yield mark, future.result()
         except BrokenProcessPool:
-            raise ModelError("a process of the replay ended, perhaps for lack of memory; use fewer --processes") from None
+            why = "a process of the replay ended, perhaps for lack of memory. Use fewer --processes"
+            raise ModelError(why) from None
         finally:
             pool.shutdown(cancel_futures=True)
 

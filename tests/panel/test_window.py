@@ -100,7 +100,7 @@ def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> No
     session.received._on_status(status(at_s=time.monotonic() - 10))
     live(window).age()
     assert live(window).lamp.lamp.word == "OFFLINE"
-    assert "no word from the engine" in window._alarm.text()
+    assert "no connection to the engine" in window._alarm.text()
 
 
 def test_a_restarted_engine_needs_no_new_panel(window: Window, settings: ChannelSettings, qtbot: QtBot) -> None:

@@ -149,7 +149,7 @@ def test_the_circle_is_in_pixels_of_the_image_as_it_was_read() -> None:
     assert as_replayed("a.png", inspection, 2.0).circle == Circle(99.5, 49.5, 40.0)
 
 
-def test_interrupted_and_continued_equals_uninterrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_continued_run_equals_an_uninterrupted_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder, out = tmp_path / "images", tmp_path / "out.json"
     folder.mkdir()
     for name in ("OK", "hole"):
@@ -194,9 +194,10 @@ def test_the_archive_of_an_image_is_known_whatever_its_name(tmp_path: Path, name
     assert image is not None
     folder = tmp_path / name
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
-    frame = Frame(np.asarray(image, np.uint8), datetime(2026, 11, 22, 12, tzinfo=UTC), "cam", Origin.SIMULATED)
-    made_by = provenance()
-    archive.commit(archive.begin(frame), ok_inspection(), Part("S1", 1, Origin.SIMULATED), made_by, frame.grabbed_at)
+    grabbed_at, made_by = datetime(2026, 11, 22, 12, tzinfo=UTC), provenance()
+    frame = Frame(np.asarray(image, np.uint8), grabbed_at, "cam", Origin.SIMULATED)
+    part = Part("S1", 1, Origin.SIMULATED)
+    archive.commit(archive.begin(frame), ok_inspection(), part, made_by, grabbed_at)
     archive.close()
     (tmp_path / "other.png").write_bytes(next(folder.rglob("*.png")).read_bytes())
     recorded, other = sources([folder, tmp_path / "other.png"])

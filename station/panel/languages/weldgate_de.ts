@@ -1518,8 +1518,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Bericht…</translation>
     </message>
     <message>
-        <source>Other verdicts only</source>
-        <translation>Nur andere Urteile</translation>
+        <source>Flipped verdicts only</source>
+        <translation>Nur geänderte Urteile</translation>
     </message>
     <message>
         <source>scale of the images</source>
@@ -1554,8 +1554,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>erst anmelden (Seite Einrichten)</translation>
     </message>
     <message>
-        <source>the scale is not allowed</source>
-        <translation>der Maßstab ist nicht erlaubt</translation>
+        <source>the scale must be 1 to 200 µm/px</source>
+        <translation>der Maßstab muss 1 bis 200 µm/px sein</translation>
     </message>
     <message>
         <source>choose a folder first</source>
@@ -1574,8 +1574,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>{n} mit der Linie verglichen, {flips} Urteile anders</translation>
     </message>
     <message>
-        <source>the same networks and limits judge it otherwise than on the line</source>
-        <translation>dieselben Netze und Grenzen urteilen anders als an der Linie</translation>
+        <source>differs from its record, although networks and limits are the same</source>
+        <translation>weicht von seinem Datensatz ab, obwohl Netze und Grenzen dieselben sind</translation>
     </message>
     <message>
         <source>and {n} more</source>
@@ -1664,8 +1664,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>schlechtester Wert je Teil</translation>
     </message>
     <message>
-        <source>brightness</source>
-        <translation>Helligkeit</translation>
+        <source>mean brightness</source>
+        <translation>mittlere Helligkeit</translation>
     </message>
     <message>
         <source>grey levels</source>
@@ -1676,7 +1676,7 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Schärfe</translation>
     </message>
     <message>
-        <source>saturated share</source>
+        <source>saturated fraction</source>
         <translation>übersteuerter Anteil</translation>
     </message>
     <message>
@@ -1763,8 +1763,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>WIEDERGABE</translation>
     </message>
     <message>
-        <source>no word from the engine; it is connected again by itself</source>
-        <translation>die Prüfung meldet sich nicht; verbunden wird von selbst</translation>
+        <source>no connection to the engine; the window reconnects automatically</source>
+        <translation>keine Verbindung zur Prüfung; das Fenster verbindet sich von selbst wieder</translation>
     </message>
     <message>
         <source>Log in</source>

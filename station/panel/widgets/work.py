@@ -68,8 +68,8 @@ class WorkBar(QWidget):
     def start(self, title: str, work: Work[Result], then: Callable[[Result], object]) -> bool:
         """Run `work` on a thread of its own and hand its result to `then` on this one.
 
-        `then` is not called if the work failed or was cancelled. Returns False, and emits `failed`, if another job is
-        running.
+        `then` is not called if the work failed or was cancelled. Returns False, and emits `failed`, if another
+        job is running.
         """
         if self._job is not None:
             self.failed.emit(translate("work", "something is still being done: wait for it or cancel it"))

@@ -1,4 +1,4 @@
-"""What is wrong: code, cause, what to do, when, acknowledged by whom."""
+"""Shows the alarms of the journal: code, cause, what to do, when, acknowledged by whom."""
 
 from datetime import datetime
 
@@ -18,7 +18,7 @@ REFRESH_MS = 2000
 
 
 class AlarmsPage(FollowingPage):
-    """Follows the journal."""
+    """Follows the alarms in the journal."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()

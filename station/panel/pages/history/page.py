@@ -142,7 +142,7 @@ class HistoryPage(Page):
         self.film.setCurrentRow(list(self.film.rows).index(number) if number in self.film.rows else -1)
 
     def _follow(self) -> None:
-        """New parts come by themselves, but not while somebody looks further down."""
+        """Add new parts automatically, but not while somebody looks further down."""
         last = self._session.received.last
         newer = last is not None and last.record.inspection_id != self._seen
         if newer and self.isVisible() and not self._work.busy and self.film.verticalScrollBar().value() == 0:
@@ -233,7 +233,7 @@ class HistoryPage(Page):
     def _on_map(self, made: tuple[int, QImage]) -> None:
         number, overlay = made
         shown = self.record.record
-        if shown is not None and shown.inspection_id == number:  # or another one was chosen meanwhile
+        if shown is not None and shown.inspection_id == number:  # or another part was chosen meanwhile
             self.record.strip.show_map(overlay)
 
     def _ask_export(self) -> None:
@@ -247,7 +247,7 @@ class HistoryPage(Page):
             self.list_to(path)
 
     def list_to(self, target: Path) -> None:
-        """The parts in the list, one row each."""
+        """Write the parts in the list as a table next to the window, one row each."""
         folder, numbers = self._session.received.folder, list(self.film.rows)
 
         def work(progress: Progress) -> str | None:
@@ -267,7 +267,7 @@ class HistoryPage(Page):
             self._work.start(title, lambda _: defect_map(settings, record), self._on_map)
 
     def export_to(self, target: Path) -> None:
-        """Crops of the parts that two people agree on."""
+        """Write the crops of the parts that two people agree on next to the window."""
         folder = self._session.received.folder
 
         def work(progress: Progress) -> str | None:
@@ -275,21 +275,21 @@ class HistoryPage(Page):
             entries = _read(folder, agreed, progress)
             if entries is None:
                 return None
-            done, count = iter(range(len(entries))), len(entries)
-            problems = list(export(entries, folder, target, "reviewed", lambda: progress(next(done, 0), count)))
+            done, of = iter(range(len(entries))), len(entries)
+            problems = list(export(entries, folder, target, "reviewed", lambda: progress(next(done, 0), of)))
             parts, left_out = translate("history", "parts"), translate("history", "left out")
             return f"{target}: {len(entries) - len(problems)} {parts}, {len(problems)} {left_out}"
 
         self._work.start(translate("history", "export"), work, self._said.setText)
 
     def close_page(self) -> None:
-        """Nothing is left running."""
+        """Stop timer and work."""
         self._timer.stop()
         self._work.close_work()
 
 
 def _read(folder: Path, numbers: Sequence[int], progress: Progress) -> list[Listed] | None:
-    """Records of these numbers; None if it was cancelled."""
+    """Return the records of these numbers; None if cancelled."""
     entries: list[Listed] = []
     for count, number in enumerate(numbers):
         if not progress(count, len(numbers)):

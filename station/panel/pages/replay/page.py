@@ -1,4 +1,4 @@
-"""Recorded images judged again, of this archive or of a folder: what is said now, beside what the line said."""
+"""Judges images of this archive or of a folder again and shows the verdicts next to those of the line."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ from station.replay.run import replay
 from station.settings.model import Settings, for_recipe
 
 NEWEST = (20, 100, 500)
-"""Frames of this archive."""
+"""Numbers of frames of this archive to choose from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Done:
 
 
 class ReplayPage(Page):
-    """Runs beside the window on one thread, on the time that the engine leaves; the PLC hears nothing of it."""
+    """Judges on one thread next to the window, in the time that the engine leaves; independent of the PLC."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -79,7 +79,7 @@ class ReplayPage(Page):
         self.scale = NumberField(1.0, 200.0, "µm/px")
         self.scale.set(self._session.received.settings.weld.um_per_px)
         self.judge, self.report = QPushButton(translate("replay", "Judge")), QPushButton(translate("replay", "Report…"))
-        self.only_flips = QPushButton(translate("replay", "Other verdicts only"))
+        self.only_flips = QPushButton(translate("replay", "Flipped verdicts only"))
         self.only_flips.setCheckable(True)
         top, second = QHBoxLayout(), QHBoxLayout()
         for widget, stretch in ((self.what, 0), (self.folder, 1), (self.choose, 0)):
@@ -99,7 +99,7 @@ class ReplayPage(Page):
         )
         self.table, self.weld, self._looking = Table(heads, stretch=0), WeldView(), WorkBar()
         policy = self._looking.sizePolicy()
-        policy.setRetainSizeWhenHidden(True)  # the picture does not jump
+        policy.setRetainSizeWhenHidden(True)  # the image does not jump
         self._looking.setSizePolicy(policy)
         right = QWidget()
         column = QVBoxLayout(right)
@@ -131,10 +131,10 @@ class ReplayPage(Page):
             self.what.setCurrentIndex(self.what.count() - 1)
 
     def start(self) -> None:
-        """Judge what the fields say."""
+        """Judge the images that the fields name."""
         scale, count, text = self.scale.value, self.what.currentData(), self.folder.text().strip()
         if scale is None:
-            self._problem.setText(translate("replay", "the scale is not allowed"))
+            self._problem.setText(translate("replay", "the scale must be 1 to 200 µm/px"))
             return
         if count is None and not text:
             self._problem.setText(translate("replay", "choose a folder first"))
@@ -143,7 +143,7 @@ class ReplayPage(Page):
         path = self._session.received.folder if count is not None else Path(text)
 
         def work(progress: Progress) -> Done | None:
-            return _judged(for_recipe(settings, number), path, count, scale, progress)
+            return _judged(for_recipe(settings, number), path, count, um_per_px=scale, progress=progress)
 
         self._problem.setText("")
         if self._work.start(translate("replay", "images are judged"), work, self._on_done):
@@ -167,7 +167,7 @@ class ReplayPage(Page):
         name, drawn = seen
         if name == self.table.chosen():
             self.weld.show_weld(drawn, caption=name)
-        else:  # another one was chosen meanwhile
+        else:  # another image was chosen meanwhile
             self._on_chosen()
 
     def _summarise(self, found: Done) -> None:
@@ -183,7 +183,7 @@ class ReplayPage(Page):
         self.said.setText(text)
         problems = list(found.problems)
         if c is not None:
-            unlike = translate("replay", "the same networks and limits judge it otherwise than on the line")
+            unlike = translate("replay", "differs from its record, although networks and limits are the same")
             problems += [*c.problems, *(f"{name}: {unlike}" for name in c.not_alike)]
         more = translate("replay", "and {n} more").format(n=len(problems) - 3)
         self._problem.setText("\n".join([*problems[:3], *([more] if len(problems) > 3 else [])]))
@@ -208,7 +208,7 @@ class ReplayPage(Page):
         self.table.fill(rows, names)
 
     def _on_chosen(self) -> None:
-        """The picture with what is found in it now."""
+        """Show the chosen image with what is found in it now."""
         found, name = self.done, self.table.chosen()
         if found is None or name is None or self._looking.busy:
             return
@@ -227,7 +227,7 @@ class ReplayPage(Page):
             self.write_report(folder / "weldgate-replay")
 
     def write_report(self, folder: Path) -> None:
-        """report.html with pictures, and replay.json."""
+        """Write report.html with images, and replay.json, next to the window."""
         found = self.done
         if found is None:
             return
@@ -248,13 +248,20 @@ class ReplayPage(Page):
         self._work.start(translate("replay", "report"), work, self._on_report)
 
     def close_page(self) -> None:
-        """Nothing is left running."""
+        """Stop the work."""
         for work in (self._work, self._looking):
             work.close_work()
 
 
-def _judged(settings: Settings, path: Path, count: int | None, um_per_px: float, progress: Progress) -> Done | None:
-    """Judge the newest `count` images, or all, below a path. Returns None if cancelled. Raises WeldgateError."""
+def _judged(
+    settings: Settings,
+    path: Path,
+    count: int | None,
+    *,
+    um_per_px: float,
+    progress: Progress,
+) -> Done | None:
+    """Judge the newest `count` images below a path, or all; None if cancelled. Raises WeldgateError."""
     found = sources([path])
     if count is not None:
         found = found[-count:]

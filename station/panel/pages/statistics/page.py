@@ -1,4 +1,4 @@
-"""Yield and counts by shift and recipe, where and what was found, trends with limits, cycle times."""
+"""Shows yield and counts by shift and recipe, where and what was found, trends with limits, cycle times."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,7 +28,7 @@ PARTS = (100, 300, 1000, 5000)
 
 
 class StatisticsPage(Page):
-    """Reads the archive when it is looked at, and on demand."""
+    """Reads the archive when the page is first shown, and on request."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -74,11 +74,12 @@ class StatisticsPage(Page):
         top.addStretch(1)
         self.clock = ClockFace()
         self.reasons = Chart(translate("statistics", "reasons"))
+        grey_levels = translate("statistics", "grey levels")
         self.trends = {
             "worst": Chart(translate("statistics", "worst score of each part")),
-            "mean_dn": Chart(translate("statistics", "brightness"), translate("statistics", "grey levels")),
+            "mean_dn": Chart(translate("statistics", "mean brightness"), grey_levels),
             "sharpness": Chart(translate("statistics", "sharpness")),
-            "saturated": Chart(translate("statistics", "saturated share")),
+            "saturated": Chart(translate("statistics", "saturated fraction")),
             "novelty": Chart(translate("statistics", "distance to the training images")),
         }
         self.cycle = Chart(translate("statistics", "inspection time"), "ms")
@@ -119,7 +120,7 @@ class StatisticsPage(Page):
             self.read()
 
     def read(self) -> None:
-        """Read the records of the chosen parts, beside the window."""
+        """Read the records of the chosen parts next to the window, and show them."""
         folder, limit = self._session.received.folder, int(self.how_many.currentData())
         title = translate("statistics", "reading records")
         self._work.start(title, lambda progress: summarise(_records(folder, limit, progress)), self._show)
@@ -150,7 +151,7 @@ class StatisticsPage(Page):
             self.write_report(path)
 
     def write_report(self, target: Path) -> None:
-        """The chosen parts as one HTML file."""
+        """Write a report on the chosen parts next to the window, as one HTML file."""
         folder, limit = self._session.received.folder, int(self.how_many.currentData())
 
         def work(progress: Progress) -> str | None:
@@ -165,7 +166,7 @@ class StatisticsPage(Page):
         self._work.start(translate("statistics", "report"), work, self._said.setText)
 
     def close_page(self) -> None:
-        """Nothing is left running."""
+        """Stop timer and work."""
         self._first.stop()
         self._work.close_work()
 

@@ -66,11 +66,14 @@ def defect_map(settings: Settings, record: Record) -> tuple[int, QImage]:
     return record.inspection_id, image.scaledToWidth(STRIP_COLUMNS // 2)
 
 
-def small_pictures(folder: Path, rows: Sequence[Row], told: Callable[[int, int], bool]) -> dict[int, QImage]:
-    """Of the rows whose pictures can be read, by number; until `told`, called with how many of how many are done, says no."""
+def small_pictures(folder: Path, rows: Sequence[Row], keep_going: Callable[[int, int], bool]) -> dict[int, QImage]:
+    """Return small images of the rows whose frames can be read, by number of the part.
+
+    `keep_going` is called with how many of how many are done; the rest is left out once it returns False.
+    """
     found: dict[int, QImage] = {}
     for count, row in enumerate(rows):
-        if not told(count, len(rows)):
+        if not keep_going(count, len(rows)):
             break
         record, _ = read_record(folder, row)
         if record is not None:
