@@ -33,7 +33,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="weldgate", description="Inline inspection of circular laser welds.")
+    parser = argparse.ArgumentParser(
+        prog="weldgate", description="Inline inspection of circular laser welds."
+    )
     parser.add_argument("--version", action="version", version=f"weldgate {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
@@ -41,27 +43,69 @@ def _parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=text, description=text)
         sub.set_defaults(command=command)
         if settings:
-            sub.add_argument("-c", "--settings", type=Path, default=SETTINGS, metavar="FILE", help="settings file (default: %(default)s)")
+            sub.add_argument(
+                "-c",
+                "--settings",
+                type=Path,
+                default=SETTINGS,
+                metavar="FILE",
+                help="settings file (default: %(default)s)",
+            )
         return sub
 
     add("run", _run, "start engine and panel")
     add("engine", _engine, "run the inspection, without a window")
     add("panel", _panel, "open the operator's window")
-    replay = add("replay", _replay, "judge recorded images or records again: same code, no PLC", settings=False)
-    replay.add_argument("paths", nargs="+", type=Path, metavar="PATH", help="images, folders, archives: with these the line is compared")
-    replay.add_argument("-c", "--settings", type=Path, metavar="FILE", help="settings file (default: the shipped limits and model)")
-    replay.add_argument("--recipe", type=int, default=1, metavar="N", help="recipe of the settings (default: %(default)s)")
+    replay = add(
+        "replay", _replay, "judge recorded images or records again: same code, no PLC", settings=False
+    )
+    replay.add_argument(
+        "paths",
+        nargs="+",
+        type=Path,
+        metavar="PATH",
+        help="images, folders, archives: with these the line is compared",
+    )
+    replay.add_argument(
+        "-c",
+        "--settings",
+        type=Path,
+        metavar="FILE",
+        help="settings file (default: the shipped limits and model)",
+    )
+    replay.add_argument(
+        "--recipe", type=int, default=1, metavar="N", help="recipe of the settings (default: %(default)s)"
+    )
     replay.add_argument("--model", type=Path, metavar="FILE", help="another classifier")
-    replay.add_argument("--um-per-px", type=float, metavar="UM", help="scale of the images (default: that of the settings)")
+    replay.add_argument(
+        "--um-per-px", type=float, metavar="UM", help="scale of the images (default: that of the settings)"
+    )
     replay.add_argument("--processes", type=int, metavar="N", help="default: one for each core")
-    replay.add_argument("--json", type=Path, metavar="FILE", help="write all results as JSON; an interrupted run goes on where it stopped")
+    replay.add_argument(
+        "--json",
+        type=Path,
+        metavar="FILE",
+        help="write all results as JSON; an interrupted run goes on where it stopped",
+    )
     replay.add_argument("--csv", type=Path, metavar="FILE", help="write a table")
     replay.add_argument(
-        "--report", type=Path, metavar="DIR", help="write report.html: counts, verdicts that flip and errors, with pictures"
+        "--report",
+        type=Path,
+        metavar="DIR",
+        help="write report.html: counts, verdicts that flip and errors, with pictures",
     )
-    replay.add_argument("--truth", type=Path, metavar="FILE", help="what the images show, for --report: CSV with name and verdict, or JSON")
+    replay.add_argument(
+        "--truth",
+        type=Path,
+        metavar="FILE",
+        help="what the images show, for --report: CSV with name and verdict, or JSON",
+    )
     add("check", _check, "say what is wrong with settings, model, archive, camera and port, and what to do")
-    add_commands(commands.add_parser("records", help="list, verify, prune and export the records of an archive; edges on the bus"))
+    add_commands(
+        commands.add_parser(
+            "records", help="list, verify, prune and export the records of an archive; edges on the bus"
+        )
+    )
     registers = add("registers", _registers, "print the register map", settings=False)
     registers.add_argument(
         "--format",
@@ -70,18 +114,46 @@ def _parser() -> argparse.ArgumentParser:
         help="md, csv: the map; st: the block in IEC 61131-3; scl: for TIA Portal; symbols: for EcoStruxure (default: %(default)s)",
     )
     line = add("line", _line, "run a simulated line PLC against a station", settings=False)
-    line.add_argument("--mode", choices=("server", "client"), default="server", help="of the station (default: %(default)s)")
-    line.add_argument("--host", default="127.0.0.1", help="server: of the station; client: our own (default: %(default)s)")
-    line.add_argument("--port", type=int, choices=range(1, 65536), default=1502, metavar="PORT", help="default: %(default)s")
+    line.add_argument(
+        "--mode", choices=("server", "client"), default="server", help="of the station (default: %(default)s)"
+    )
+    line.add_argument(
+        "--host", default="127.0.0.1", help="server: of the station; client: our own (default: %(default)s)"
+    )
+    line.add_argument(
+        "--port", type=int, choices=range(1, 65536), default=1502, metavar="PORT", help="default: %(default)s"
+    )
     line.add_argument("--parts", type=int, default=24, help="default: %(default)s")
-    line.add_argument("--pace", type=float, default=0.0, metavar="S", help="seconds between parts (default: as fast as it goes)")
-    line.add_argument("--accept-simulated", action="store_true", help="take verdicts on pictures of an emulated camera")
-    line.add_argument("--knob", nargs="+", default=[], metavar="NAME", help="failures, rolled by the seed; a wrong name lists them")
+    line.add_argument(
+        "--pace",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="seconds between parts (default: as fast as it goes)",
+    )
+    line.add_argument(
+        "--accept-simulated", action="store_true", help="take verdicts on pictures of an emulated camera"
+    )
+    line.add_argument(
+        "--knob",
+        nargs="+",
+        default=[],
+        metavar="NAME",
+        help="failures, rolled by the seed; a wrong name lists them",
+    )
     line.add_argument("--seed", type=int, default=0, help="default: %(default)s")
-    certificates = add("certificates", _certificates, "make certificates for trials of Modbus/TCP Security", settings=False)
-    certificates.add_argument("folder", type=Path, metavar="DIR", help="where they go; keys are readable by the owner alone")
-    certificates.add_argument("--host", default="127.0.0.1", help="name or address of the server (default: %(default)s)")
-    certificates.add_argument("--days", type=int, default=90, help="how long they hold (default: %(default)s)")
+    certificates = add(
+        "certificates", _certificates, "make certificates for trials of Modbus/TCP Security", settings=False
+    )
+    certificates.add_argument(
+        "folder", type=Path, metavar="DIR", help="where they go; keys are readable by the owner alone"
+    )
+    certificates.add_argument(
+        "--host", default="127.0.0.1", help="name or address of the server (default: %(default)s)"
+    )
+    certificates.add_argument(
+        "--days", type=int, default=90, help="how long they hold (default: %(default)s)"
+    )
     return parser
 
 

@@ -77,7 +77,9 @@ class DefectKind:
         """Read and write a kind as its name; an unknown name is refused."""
         from pydantic_core import core_schema
 
-        as_name = core_schema.plain_serializer_function_ser_schema(lambda kind: kind.name, return_schema=core_schema.str_schema())
+        as_name = core_schema.plain_serializer_function_ser_schema(
+            lambda kind: kind.name, return_schema=core_schema.str_schema()
+        )
         return core_schema.no_info_plain_validator_function(_checked, serialization=as_name)
 
 

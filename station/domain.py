@@ -145,7 +145,9 @@ class Inspection:
     def __post_init__(self) -> None:
         judged = len(self.scores) == SEGMENTS and self.ring is not None
         if self.verdict is Verdict.OK and not (judged and self.reason is None and not any(self.rejected)):
-            raise ValueError("OK needs a ring, 21 judged segments, none of them rejected, and no reason against it")
+            raise ValueError(
+                "OK needs a ring, 21 judged segments, none of them rejected, and no reason against it"
+            )
         if len(self.rejected) != len(self.scores):
             raise ValueError(f"{len(self.scores)} scores with {len(self.rejected)} decisions on them")
 
@@ -155,6 +157,8 @@ class Inspection:
         return tuple(kind is not None for kind in self.rejected)
 
     @staticmethod
-    def error(reason: Reason, ring: Ring | None = None, quality: Quality | None = None, timing: Timing | None = None) -> "Inspection":
+    def error(
+        reason: Reason, ring: Ring | None = None, quality: Quality | None = None, timing: Timing | None = None
+    ) -> "Inspection":
         """A part that could not be judged."""
         return Inspection(Verdict.ERROR, reason, ring=ring, quality=quality, timing=timing or Timing())

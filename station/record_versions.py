@@ -30,10 +30,17 @@ def upgraded(raw: dict[str, Any]) -> dict[str, Any]:
         for kind, (threshold, min_mm) in KINDS.items()
     ]
     provenance["thresholds"] = {"kinds": limits, "segments": provenance.pop("segment_thresholds", [])}
-    inspection["scores"] = [{"ok": s["ok"], "defects": {kind: s[kind] for kind in KINDS}} for s in inspection["scores"]]
+    inspection["scores"] = [
+        {"ok": s["ok"], "defects": {kind: s[kind] for kind in KINDS}} for s in inspection["scores"]
+    ]
     rejected = rejected_kinds(
         _SCORES.validate_python(inspection["scores"]),
         _FINDINGS.validate_python(inspection["findings"]),
         _THRESHOLDS.validate_python(provenance["thresholds"]),
     )
-    return {**raw, "inspection": {**inspection, "rejected": list(rejected)}, "provenance": provenance, "format": FORMAT}
+    return {
+        **raw,
+        "inspection": {**inspection, "rejected": list(rejected)},
+        "provenance": provenance,
+        "format": FORMAT,
+    }

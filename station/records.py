@@ -36,7 +36,9 @@ class Provenance:
         kinds = self.thresholds.kinds
         words = [f"{limit.kind.reason} {limit.threshold:g}" for limit in kinds]
         words += [f"segment {number}: {limit:g}" for number, limit in self.thresholds.segments]
-        words += [f"{limit.kind.reason} below {limit.min_mm:g} mm tolerated" for limit in kinds if limit.min_mm > 0]
+        words += [
+            f"{limit.kind.reason} below {limit.min_mm:g} mm tolerated" for limit in kinds if limit.min_mm > 0
+        ]
         return ", ".join(words)
 
 

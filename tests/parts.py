@@ -35,7 +35,11 @@ def scores_of(ok: float, hole: float, missing_weld: float) -> SegmentScores:
 
 
 def thresholds(
-    hole: float, missing_weld: float, segments: tuple[tuple[int, float], ...] = (), hole_mm: float = 0.0, missing_mm: float = 0.0
+    hole: float,
+    missing_weld: float,
+    segments: tuple[tuple[int, float], ...] = (),
+    hole_mm: float = 0.0,
+    missing_mm: float = 0.0,
 ) -> Thresholds:
     """Limits of holes and missing weld."""
     return Thresholds((Limit(KINDS[0], hole, hole_mm), Limit(KINDS[1], missing_weld, missing_mm)), segments)
@@ -59,7 +63,9 @@ def nok_inspection() -> Inspection:
     bad = list(good_scores())
     bad[3] = scores_of(0.1, 0.9, 0.0)
     rejected = tuple(Reason.HOLE if i == 3 else None for i in range(SEGMENTS))
-    return replace(ok_inspection(), verdict=Verdict.NOK, reason=Reason.HOLE, scores=tuple(bad), rejected=rejected)
+    return replace(
+        ok_inspection(), verdict=Verdict.NOK, reason=Reason.HOLE, scores=tuple(bad), rejected=rejected
+    )
 
 
 def provenance() -> Provenance:

@@ -24,7 +24,18 @@ def test_files_are_small_and_say_what_they_are(path: Path) -> None:
 NAMED_ROOMS = (
     "station/plc",
     "station/__main__.py",
-    *(f"station/engine/{name}.py" for name in ("cycle", "health", "plc_result", "procedure", "recording", "service_mode", "status_report")),
+    *(
+        f"station/engine/{name}.py"
+        for name in (
+            "cycle",
+            "health",
+            "plc_result",
+            "procedure",
+            "recording",
+            "service_mode",
+            "status_report",
+        )
+    ),
 )
 """Where calls with more than four arguments must name them."""
 NAMED = [path for path in SOURCES for room in NAMED_ROOMS if path.is_relative_to(ROOT / room)]
@@ -56,11 +67,15 @@ def test_importing_touches_no_device_thread_or_variant() -> None:
         "from PySide6.QtWidgets import QApplication\n"
         "assert QApplication.instance() is None\n"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
     assert done.returncode == 0, done.stderr
 
 
 def test_the_station_alone_needs_neither_renderer_nor_torch() -> None:
     code = "import sys, station.engine.startup, station.cli.replay\nassert not {'torch', 'mitsuba', 'synth', 'models'} & set(sys.modules)\n"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
     assert done.returncode == 0, done.stderr

@@ -80,7 +80,9 @@ async def _drive(port: int, parts: int, loaded: threading.Event) -> dict[bool, l
 def main(argv: Sequence[str] | None = None) -> int:
     """Print medians and p99."""
     parser = argparse.ArgumentParser(prog="bench-plc", description=__doc__)
-    parser.add_argument("--parts", type=int, default=500, help="quiet, and as many loaded (default: %(default)s)")
+    parser.add_argument(
+        "--parts", type=int, default=500, help="quiet, and as many loaded (default: %(default)s)"
+    )
     arguments = parser.parse_args(argv)
     line = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
     loaded, stop = threading.Event(), threading.Event()
@@ -100,7 +102,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         for reader in readers:
             reader.join(timeout=5)
         line.stop()
-    table = Table("", "median ms", "p99 ms", title=f"{arguments.parts} parts each, station as server, nothing inspected")
+    table = Table(
+        "", "median ms", "p99 ms", title=f"{arguments.parts} parts each, station as server, nothing inspected"
+    )
     others = f"{READERS} more clients, {READS_PER_S} reads/s each"
     rows = (
         ("TRIGGER written to RESULT_VALID read", found[False]),

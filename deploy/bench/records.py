@@ -65,7 +65,10 @@ def _codecs(console: Console) -> None:
             taken[name].append((perf_counter() - start) * 1000)
             sizes[name] += len(buffer)
     table = Table(
-        "", "median ms", "MB a frame", title=f"lossless codecs, {len(images)} frames of {images[0].shape[1]} x {images[0].shape[0]}"
+        "",
+        "median ms",
+        "MB a frame",
+        title=f"lossless codecs, {len(images)} frames of {images[0].shape[1]} x {images[0].shape[0]}",
     )
     for name, ms in taken.items():
         table.add_row(name, f"{statistics.median(ms):.1f}", f"{sizes[name] / len(images) / 1e6:.2f}")
@@ -76,15 +79,26 @@ def _writing(folder: Path) -> list[tuple[str, Callable[[], object]]]:
     image = read_image(shipped_parts()[0].path)
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     scores = (SegmentScores(1.0, dict.fromkeys(KINDS, 0.0)),) * SEGMENTS
-    inspection = Inspection(Verdict.OK, None, Ring(50, 50, 40, 1), None, scores, rejected=(None,) * SEGMENTS, look=(0.123,) * 192)
+    inspection = Inspection(
+        Verdict.OK, None, Ring(50, 50, 40, 1), None, scores, rejected=(None,) * SEGMENTS, look=(0.123,) * 192
+    )
     provenance = Provenance("bench", "0", "", "", 0, Thresholds(tuple(Limit(kind, 0.5) for kind in KINDS)))
 
     def commit(frame: Frame | None) -> None:
-        archive.commit(archive.begin(frame), inspection, Part("BENCH", 1, Origin.SIMULATED), provenance, datetime.now(UTC))
+        archive.commit(
+            archive.begin(frame),
+            inspection,
+            Part("BENCH", 1, Origin.SIMULATED),
+            provenance,
+            datetime.now(UTC),
+        )
 
     frame = Frame(image, datetime.now(UTC), "bench", Origin.SIMULATED)
     return [
-        (f"encode a frame of {image.shape[1]} x {image.shape[0]}, beside the inspection", lambda: encode_png(image)),
+        (
+            f"encode a frame of {image.shape[1]} x {image.shape[0]}, beside the inspection",
+            lambda: encode_png(image),
+        ),
         ("encode, files, fsync, row", lambda: commit(frame)),
         ("record without a frame: file, fsync, row", lambda: commit(None)),
     ]

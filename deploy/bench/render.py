@@ -5,6 +5,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,9 @@ SAMPLES = 64
 def main(argv: Sequence[str] | None = None) -> int:
     """Time both in turns and print medians and their ratio, then where the generator's time goes."""
     parser = argparse.ArgumentParser(prog="bench_render", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=3, help="how often each is timed (default: %(default)s)")
+    parser.add_argument(
+        "--rounds", type=int, default=3, help="how often each is timed (default: %(default)s)"
+    )
     arguments = parser.parse_args(argv)
     if arguments.rounds < 1:
         parser.error("--rounds must be at least 1")
@@ -54,20 +57,28 @@ def run(rounds: int) -> None:
     plain(shards[0].parts[0], model, optics)
     seconds: dict[str, list[float]] = {"plain script": [], "generator, flat": [], "generator, arcs": []}
     with workers(2) as pool, tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
-        warm = [Order(seed=1, count=48, recipe=PAPER, switches=ALL, is_straight=True), Order(seed=1, count=42, recipe=WIDE, switches=ALL)]
+        warm = [
+            Order(seed=1, count=48, recipe=PAPER, switches=ALL, is_straight=True),
+            Order(seed=1, count=42, recipe=WIDE, switches=ALL),
+        ]
         for order in warm:
             write_dataset(Path(folder) / f"warm{order.is_straight}", order, model, pool, lambda n: None)
         for i in range(rounds):
-            seconds["plain script"].append(_timed(lambda: [plain(p, model, optics) for p in shards[0].parts]) / 12)
+            seconds["plain script"].append(
+                _timed(lambda: [plain(p, model, optics) for p in shards[0].parts]) / 12
+            )
             for name, recipe, flat in (("generator, flat", PAPER, True), ("generator, arcs", WIDE, False)):
                 order = Order(seed=9 + i, count=240, recipe=recipe, switches=ALL, is_straight=flat)
                 out = Path(folder) / f"{flat}{i}"
-                seconds[name].append(_timed(lambda order=order, out=out: write_dataset(out, order, model, pool, lambda n: None)) / 240)  # type: ignore[misc]
+                write = partial(write_dataset, out, order, model, pool, lambda _: None)
+                seconds[name].append(_timed(write) / 240)
     table = Table("", "crops per s, median", "ms a crop", "5000 crops, min", "times the plain script")
     base = float(np.median(seconds["plain script"]))
     for name, values in seconds.items():
         each = float(np.median(values))
-        table.add_row(name, f"{1 / each:.1f}", f"{each * 1000:.1f}", f"{each * 5000 / 60:.1f}", f"{base / each:.1f}")
+        table.add_row(
+            name, f"{1 / each:.1f}", f"{each * 1000:.1f}", f"{each * 5000 / 60:.1f}", f"{base / each:.1f}"
+        )
     Console().print(table)
     _noise(shards[0], model, optics)
     _parts_of_the_time(model, optics)
@@ -76,24 +87,49 @@ def run(rounds: int) -> None:
 def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
     """One flat crop the plain way: one scene, Mitsuba's spots and direct integrator, one call."""
     scene = piece_scene([part], model)
-    world: dict[str, Any] = {"type": "scene", "integrator": {"type": "direct", "emitter_samples": 2, "bsdf_samples": 0}}
+    world: dict[str, Any] = {
+        "type": "scene",
+        "integrator": {"type": "direct", "emitter_samples": 2, "bsdf_samples": 0},
+    }
     world |= {f"shape_{i}": shape for i, shape in enumerate(mitsuba_scene(scene).shapes())}
-    for i, (at, value) in enumerate(zip(scene.lights[0].positions_mm, scene.lights[0].intensity, strict=True)):
+    for i, (at, value) in enumerate(
+        zip(scene.lights[0].positions_mm, scene.lights[0].intensity, strict=True)
+    ):
         world[f"light_{i}"] = {
             "type": "spot",
-            "to_world": mi.ScalarTransform4f().look_at(origin=at.tolist(), target=[at[0], at[1], 0.0], up=[0, 1, 0]),
+            "to_world": mi.ScalarTransform4f().look_at(
+                origin=at.tolist(), target=[at[0], at[1], 0.0], up=[0, 1, 0]
+            ),
             "intensity": {"type": "uniform", "value": float(value)},
             "cutoff_angle": 35.0,
             "beam_width": 2.0,
         }
     field = float(2 * np.rad2deg(np.arctan(optics.width_px * optics.pixel_mm / 2 / optics.distance_mm)))
-    crop = dict(zip(("crop_offset_x", "crop_offset_y", "crop_width", "crop_height"), piece_window(optics), strict=True))
-    film = {"type": "hdrfilm", "width": optics.width_px, "height": optics.height_px, "pixel_format": "luminance", **crop}
+    crop = dict(
+        zip(
+            ("crop_offset_x", "crop_offset_y", "crop_width", "crop_height"), piece_window(optics), strict=True
+        )
+    )
+    film = {
+        "type": "hdrfilm",
+        "width": optics.width_px,
+        "height": optics.height_px,
+        "pixel_format": "luminance",
+        **crop,
+    }
     view = mi.ScalarTransform4f().look_at(origin=[0, 0, optics.distance_mm], target=[0, 0, 0], up=[0, 1, 0])
     sensor = mi.load_dict(
-        {"type": "perspective", "fov": field, "fov_axis": "x", "to_world": view, "film": {**film, "rfilter": {"type": "box"}}}
+        {
+            "type": "perspective",
+            "fov": field,
+            "fov_axis": "x",
+            "to_world": view,
+            "film": {**film, "rfilter": {"type": "box"}},
+        }
     )
-    return np.asarray(mi.render(mi.load_dict(world), sensor=sensor, spp=SAMPLES, seed=mi.UInt32(part.seed & 0xFFFF)))
+    return np.asarray(
+        mi.render(mi.load_dict(world), sensor=sensor, spp=SAMPLES, seed=mi.UInt32(part.seed & 0xFFFF))
+    )
 
 
 def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
@@ -106,7 +142,9 @@ def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
     rough = render(scene, optics, pixels).radiance.reshape(128, 128)
     scale = float(np.median(theirs / fine))
     shares = [float(np.sqrt(np.mean((image - fine) ** 2)) / fine.mean()) for image in (theirs / scale, rough)]
-    Console().print(f"error against 64 rays a pixel with all emitters: plain script {shares[0]:.1%}, generator {shares[1]:.1%}")
+    Console().print(
+        f"error against 64 rays a pixel with all emitters: plain script {shares[0]:.1%}, generator {shares[1]:.1%}"
+    )
 
 
 def _parts_of_the_time(model: WeldModel, optics: Optics) -> None:

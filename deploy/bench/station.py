@@ -55,7 +55,10 @@ def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
     settings = Settings.model_validate(
         {
             "camera": {"kind": "pylon", "device_class": "BaslerCamEmu", "serial": SERIAL},
-            "model": {"path": SHIPPED_NETWORKS / "weldgate.onnx", "ring_path": SHIPPED_NETWORKS / "ring.onnx"},
+            "model": {
+                "path": SHIPPED_NETWORKS / "weldgate.onnx",
+                "ring_path": SHIPPED_NETWORKS / "ring.onnx",
+            },
             "archive": {"folder": folder / "records"},
             "plc": {"port": free_ports(1)[0]},
         }
@@ -106,7 +109,9 @@ def _print(answers: list[Answer], parts: list[PartEvent]) -> None:
         ("publish", [p.publish_ms for p in parts]),
         ("trigger to RESULT_VALID, as the line sees it", [a.trigger_to_valid_ms for a in answers]),
     )
-    table = Table("step", "median ms", "p99 ms", title=f"{len(answers)} parts of 4200 x 2160 on the emulated camera")
+    table = Table(
+        "step", "median ms", "p99 ms", title=f"{len(answers)} parts of 4200 x 2160 on the emulated camera"
+    )
     for name, values in rows:
         known = [v for v in values if v is not None]
         table.add_row(name, f"{np.median(known):.1f}", f"{np.percentile(known, 99):.1f}")

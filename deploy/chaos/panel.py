@@ -60,7 +60,10 @@ def run(folder: Path, blocks: int, parts: int) -> dict[str, Report]:
 
 
 async def _drive(feed: Feed, port: int, settings: Path, blocks: int, parts: int) -> dict[str, Report]:
-    line, reports = SimulatedLine.at("127.0.0.1", port, accept_simulated=True), {way: Report() for way in WAYS}
+    line, reports = (
+        SimulatedLine.at("127.0.0.1", port, accept_simulated=True),
+        {way: Report() for way in WAYS},
+    )
     images = [read_image(part.path) for part in shipped_parts()]
     await line.connect()
     await line.wait_ready(30.0)
@@ -112,7 +115,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     rows = [
         ("parts", [str(r.parts) for r in reports.values()]),
         ("missed", [str(r.missed) for r in reports.values()]),
-        ("trigger to RESULT_VALID, median ms", [f"{statistics.median(r.valid_ms):.0f}" for r in reports.values()]),
+        (
+            "trigger to RESULT_VALID, median ms",
+            [f"{statistics.median(r.valid_ms):.0f}" for r in reports.values()],
+        ),
         ("p99 ms", [f"{r.p99_ms:.0f}" for r in reports.values()]),
         ("p99 beside no window", [f"{r.p99_ms / plain.p99_ms:.2f}" for r in reports.values()]),
     ]

@@ -80,7 +80,13 @@ class Truths:
             self.late.add(trigger.serial)
         time.sleep(DEADLINE_MS * SLACK / 1000 * 1.3 if late else self._rng.uniform(0.0, 0.01))
         roll = self._rng.random()
-        verdict = VerdictCode.ERROR if roll < ERROR_SHARE else VerdictCode.OK if roll < OK_SHARE else VerdictCode.NOK
+        verdict = (
+            VerdictCode.ERROR
+            if roll < ERROR_SHARE
+            else VerdictCode.OK
+            if roll < OK_SHARE
+            else VerdictCode.NOK
+        )
         number = len(self.made) + 1
         self.made[number] = (trigger.serial, verdict)
         reason = 0 if verdict is VerdictCode.OK else 1
@@ -117,7 +123,9 @@ def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
         line.stop()
 
 
-async def _drive(plc: SimulatedLine, truths: Truths, mode: str, parts: int, seed: int, progress: bool) -> Report:
+async def _drive(
+    plc: SimulatedLine, truths: Truths, mode: str, parts: int, seed: int, progress: bool
+) -> Report:
     rng, report, calm = random.Random(seed), Report(mode), 0
     await plc.connect(10.0)
     try:
@@ -132,7 +140,9 @@ async def _drive(plc: SimulatedLine, truths: Truths, mode: str, parts: int, seed
     return report
 
 
-def _note(report: Report, answer: Answer, serial: str, knobs: frozenset[Knob], truths: Truths, undisturbed: bool) -> None:
+def _note(
+    report: Report, answer: Answer, serial: str, knobs: frozenset[Knob], truths: Truths, undisturbed: bool
+) -> None:
     report.parts += 1
     report.knobs.update(str(knob) for knob in knobs)
     made = truths.made.get(answer.inspection_id)
@@ -175,7 +185,10 @@ def tell(reports: Sequence[Report], console: Console) -> None:
         ("false OK", [str(r.false_ok) for r in reports]),
         ("results matched to the wrong part", [str(r.mismatched) for r in reports]),
         ("lost results", [str(r.lost) for r in reports]),
-        ("trigger to RESULT_VALID, median ms", [f"{statistics.median(r.valid_ms):.1f}" if r.valid_ms else "-" for r in reports]),
+        (
+            "trigger to RESULT_VALID, median ms",
+            [f"{statistics.median(r.valid_ms):.1f}" if r.valid_ms else "-" for r in reports],
+        ),
     ]
     rows += [(f"knob: {knob}", [str(r.knobs[str(knob)]) for r in reports]) for knob in Knob]
     why = sorted({name for r in reports for name in r.refused_by})

@@ -86,12 +86,16 @@ def _write(folder: Path, told: int) -> None:
     rng = np.random.default_rng()
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     clean = SegmentScores(1.0, dict.fromkeys(KINDS, 0.0))
-    inspection = Inspection(Verdict.OK, None, Ring(50, 50, 40, 1), None, (clean,) * SEGMENTS, rejected=(None,) * SEGMENTS)
+    inspection = Inspection(
+        Verdict.OK, None, Ring(50, 50, 40, 1), None, (clean,) * SEGMENTS, rejected=(None,) * SEGMENTS
+    )
     provenance = Provenance("chaos", "0", "", "", 0, Thresholds(tuple(Limit(kind, 0.5) for kind in KINDS)))
     while True:
         now = datetime.now(UTC)
         frame = Frame(rng.integers(0, 256, (120, 160), dtype=np.uint8), now, "chaos", Origin.SIMULATED)
-        record = archive.commit(archive.begin(frame), inspection, Part("CHAOS", 1, Origin.SIMULATED), provenance, now)
+        record = archive.commit(
+            archive.begin(frame), inspection, Part("CHAOS", 1, Origin.SIMULATED), provenance, now
+        )
         os.write(told, b"%08d\n" % record.inspection_id)
         archive.mark_shown(record.inspection_id, True)
 

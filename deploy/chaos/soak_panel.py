@@ -65,7 +65,12 @@ class Level:
         gc.collect()
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         files = len(list(Path("/proc/self/fd").iterdir()))
-        return Level(pages * os.sysconf("SC_PAGE_SIZE") / 1e6, len(QApplication.allWidgets()), threading.active_count(), files)
+        return Level(
+            pages * os.sysconf("SC_PAGE_SIZE") / 1e6,
+            len(QApplication.allWidgets()),
+            threading.active_count(),
+            files,
+        )
 
 
 def soak(folder: Path, parts: int) -> list[Level]:
@@ -91,7 +96,9 @@ def soak(folder: Path, parts: int) -> list[Level]:
             if number % 10 == 0:
                 _live(30)
             if number % (parts // ROUNDS) == 0:
-                window.speak("de" if window.session.received.parts and number // (parts // ROUNDS) % 2 else "en")
+                window.speak(
+                    "de" if window.session.received.parts and number // (parts // ROUNDS) % 2 else "en"
+                )
                 for info in PAGES:
                     window.go(info.key)
                 _until_heard(window, number)
@@ -109,9 +116,17 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     archive = Archive(settings.archive)
     frame = Frame(image, datetime.now(UTC), "soak", Origin.SIMULATED)
     inspection = loaded.inspector.inspect(image)
-    record = archive.commit(archive.begin(frame), inspection, Part("SOAK", 1, Origin.SIMULATED), loaded.provenance, frame.grabbed_at)
+    record = archive.commit(
+        archive.begin(frame),
+        inspection,
+        Part("SOAK", 1, Origin.SIMULATED),
+        loaded.provenance,
+        frame.grabbed_at,
+    )
     archive.close()
-    words = tuple(pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1}))
+    words = tuple(
+        pack_window(STATUS_START, STATUS_WORDS, {"TEST_U32": TEST_U32, "TEST_F32": TEST_F32, "COUNT_OK": 1})
+    )
     now_s = time.monotonic()
     line = LineState(
         control=Control(0),
@@ -161,19 +176,27 @@ def _until_heard(window: Window, number: int) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Print the levels; 0 if they stay flat over the second half."""
     parser = argparse.ArgumentParser(prog="soak-panel", description=__doc__)
-    parser.add_argument("--parts", type=int, default=int(HOURS * 3600 / PACE_S), help="default: %(default)s, eight hours")
+    parser.add_argument(
+        "--parts", type=int, default=int(HOURS * 3600 / PACE_S), help="default: %(default)s, eight hours"
+    )
     arguments = parser.parse_args(argv)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     app = QApplication(sys.argv[:1])
     with tempfile.TemporaryDirectory(prefix="weldgate-") as name:
         levels = soak(Path(name), arguments.parts)
     for index, level in enumerate(levels, 1):
-        print(f"{index * 10:3d} %  {level.memory_mb:6.1f} MB  {level.widgets} widgets  {level.threads} threads  {level.files} files")
+        print(
+            f"{index * 10:3d} %  {level.memory_mb:6.1f} MB  {level.widgets} widgets  {level.threads} threads  {level.files} files"
+        )
     half, last = levels[len(levels) // 2 - 1], levels[-1]
     grown = last.memory_mb - half.memory_mb
     print(f"second half: {grown:+.1f} MB")
     app.quit()
-    return 0 if grown < 5 and (last.widgets, last.threads, last.files) <= (half.widgets, half.threads, half.files) else 1
+    return (
+        0
+        if grown < 5 and (last.widgets, last.threads, last.files) <= (half.widgets, half.threads, half.files)
+        else 1
+    )
 
 
 if __name__ == "__main__":

@@ -35,14 +35,28 @@ RENDER_PATIENCE_S = 120.0
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the demo; 0 if every part was judged and none escaped, 1 if not, 2 if it could not run."""
-    parser = argparse.ArgumentParser(prog="weldgate-demo", description="The whole station against a simulated line, on rendered parts.")
+    parser = argparse.ArgumentParser(
+        prog="weldgate-demo", description="The whole station against a simulated line, on rendered parts."
+    )
     parser.add_argument("--headless", action="store_true", help="no window, even if there is a display")
     parser.add_argument("--parts", type=int, default=24, help="number of parts (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the results")
-    parser.add_argument("--records", type=Path, default=Path("demo-records"), metavar="DIR", help="where records go (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=7, help="seed of the freshly rendered parts (default: %(default)s)")
     parser.add_argument(
-        "--pace", type=float, default=0.0, metavar="S", help="seconds between parts (default: as fast as it goes; 2 with a window)"
+        "--records",
+        type=Path,
+        default=Path("demo-records"),
+        metavar="DIR",
+        help="where records go (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=7, help="seed of the freshly rendered parts (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--pace",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="seconds between parts (default: as fast as it goes; 2 with a window)",
     )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
@@ -73,16 +87,24 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
         fresh = max(0, arguments.parts - len(shipped_parts()))
         renderer = stack.enter_context(_renderer(folder / "fresh", fresh, arguments.seed)) if fresh else None
         environment = {**os.environ, **feed.environment}
-        engine = stack.enter_context(running([*room_command("station"), "engine", "-c", str(settings)], environment, log))
+        engine = stack.enter_context(
+            running([*room_command("station"), "engine", "-c", str(settings)], environment, log)
+        )
         if window:
             panel_log = stack.enter_context((folder / "panel.log").open("w"))
-            panel = stack.enter_context(running([*room_command("station"), "panel", "-c", str(settings)], dict(os.environ), panel_log))
+            panel = stack.enter_context(
+                running([*room_command("station"), "panel", "-c", str(settings)], dict(os.environ), panel_log)
+            )
             time.sleep(1.0)
             if panel.poll() is not None:
-                console.print(f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]")
+                console.print(
+                    f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]"
+                )
         stopping = threading.Event()
         parts = _parts(arguments.parts, folder / "fresh", renderer, console, stopping)
-        judged = asyncio.run(_drive(ports[0], feed, parts, stopping, engine, folder / "engine.log", pace_s, console))
+        judged = asyncio.run(
+            _drive(ports[0], feed, parts, stopping, engine, folder / "engine.log", pace_s, console)
+        )
     summarise(judged, records, console)
     if arguments.json is not None:
         write_json(arguments.json, judged, records)
@@ -90,7 +112,9 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def _has_display() -> bool:
-    return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return sys.platform in ("win32", "darwin") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
 
 
 @contextmanager
@@ -101,7 +125,11 @@ def _renderer(out: Path, count: int, seed: int) -> "Iterator[subprocess.Popen[by
 
 
 def _parts(
-    count: int, fresh: Path, renderer: "subprocess.Popen[bytes] | None", console: Console, stopping: threading.Event
+    count: int,
+    fresh: Path,
+    renderer: "subprocess.Popen[bytes] | None",
+    console: Console,
+    stopping: threading.Event,
 ) -> Iterator[DemoPart]:
     """Shipped frames first, then fresh ones as they come."""
     shipped = shipped_parts()[:count]
@@ -111,11 +139,17 @@ def _parts(
     while len(seen) < wanted:
         waited_s = time.monotonic()
         with console.status(f"rendering part {len(seen) + 1} of {wanted}") as status:
-            while not (ready := sorted(p for p in (fresh / "frames").glob("part_*.json") if p.stem not in seen)):
+            while not (
+                ready := sorted(p for p in (fresh / "frames").glob("part_*.json") if p.stem not in seen)
+            ):
                 dead = renderer is None or renderer.poll() is not None
                 late = stopping.is_set() or time.monotonic() - waited_s > RENDER_PATIENCE_S
-                if late or (dead and not any(p.stem not in seen for p in (fresh / "frames").glob("part_*.json"))):
-                    raise SynthError("the renderer stopped; run 'weldgate-synth part --out DIR --count 1' to see why")
+                if late or (
+                    dead and not any(p.stem not in seen for p in (fresh / "frames").glob("part_*.json"))
+                ):
+                    raise SynthError(
+                        "the renderer stopped; run 'weldgate-synth part --out DIR --count 1' to see why"
+                    )
                 status.update(f"rendering part {len(seen) + 1} of {wanted}  {_bar(len(seen), wanted)}")
                 time.sleep(0.05)
         for path in ready:

@@ -18,10 +18,14 @@ SERIAL = "0815-0000"
 def shipped_parts() -> list[DemoPart]:
     """The few rendered frames that come with the project."""
     labels = json.loads((SHIPPED_FRAMES / "labels.json").read_text())["frames"]
-    return [DemoPart(Path(item["frame"]).stem, SHIPPED_FRAMES / item["frame"], item["truth"]) for item in labels]
+    return [
+        DemoPart(Path(item["frame"]).stem, SHIPPED_FRAMES / item["frame"], item["truth"]) for item in labels
+    ]
 
 
-def station_toml(records: Path, plc_port: int, events_port: int, preview_port: int, requests_port: int) -> str:
+def station_toml(
+    records: Path, plc_port: int, events_port: int, preview_port: int, requests_port: int
+) -> str:
     """Settings of a station with the emulated camera and the shipped networks."""
     good = next(part.path for part in shipped_parts() if part.truth == "OK")
     return f"""
@@ -46,9 +50,13 @@ requests_port = {requests_port}
 
 
 @contextmanager
-def running(command: list[str], environment: dict[str, str], log: object) -> "Iterator[subprocess.Popen[bytes]]":
+def running(
+    command: list[str], environment: dict[str, str], log: object
+) -> "Iterator[subprocess.Popen[bytes]]":
     """A process that is ended afterwards."""
-    process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=ROOMS_FOLDER)  # type: ignore[call-overload]
+    process = subprocess.Popen(
+        command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=ROOMS_FOLDER
+    )  # type: ignore[call-overload]
     try:
         yield process
     finally:

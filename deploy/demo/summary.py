@@ -105,7 +105,10 @@ def summarise(judged: list[Judged], records: Path, console: Console) -> None:
         ("  false rejects", str(totals.false_rejects)),
         ("not judged (ERROR)", str(totals.errors)),
         ("handshakes complete", f"{totals.handshakes_complete} of {totals.parts}"),
-        ("trigger to RESULT_VALID", f"median {median(times):.0f} ms, worst {times[-1]:.0f} ms" if times else "-"),
+        (
+            "trigger to RESULT_VALID",
+            f"median {median(times):.0f} ms, worst {times[-1]:.0f} ms" if times else "-",
+        ),
         ("records", str(records)),
     ):
         table.add_row(name, value)

@@ -76,7 +76,9 @@ class _Qualified(ast.NodeTransformer):
         self._full = {name: f"builtins.{name}" for name in _AMBIGUOUS}
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module:
-                self._full |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
+                self._full |= {
+                    alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names
+                }
         for node in tree.body:
             if isinstance(node, ast.ClassDef):
                 self._full[node.name] = f"{module}.{node.name}"
@@ -110,7 +112,9 @@ class _Qualified(ast.NodeTransformer):
             def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
                 if isinstance(node.value, ast.Name) and node.value.id in ("Literal", "Annotated"):
                     return node
-                return ast.copy_location(ast.Subscript(self.visit(node.value), self.visit(node.slice), node.ctx), node)
+                return ast.copy_location(
+                    ast.Subscript(self.visit(node.value), self.visit(node.slice), node.ctx), node
+                )
 
         written: ast.expr = Names().visit(annotation)
         return written
@@ -134,7 +138,9 @@ def _entry(node: ast.stmt, after: ast.stmt | None, in_class: bool) -> Iterator[E
     elif isinstance(node, ast.ClassDef):
         bases = ", ".join(ast.unparse(base) for base in node.bases)
         inner = tuple(entries(node.body, in_class=True))
-        yield Entry("class", f"{node.name}({bases})" if bases else node.name, (), ast.get_docstring(node) or "", inner)
+        yield Entry(
+            "class", f"{node.name}({bases})" if bases else node.name, (), ast.get_docstring(node) or "", inner
+        )
     elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
         options = (f":type: {ast.unparse(node.annotation)}", *_value(node.value))
         yield Entry("attribute" if in_class else "data", node.target.id, options, _following(after))
@@ -168,14 +174,22 @@ def _value(value: ast.expr | None) -> tuple[str, ...]:
 
 def _following(node: ast.stmt | None) -> str:
     """Return the docstring that follows a constant or a field."""
-    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+    if (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    ):
         return inspect.cleandoc(node.value.value)
     return ""
 
 
 def _written(entry: Entry, margin: str) -> list[str]:
     inside = margin + "   "
-    lines = [f"{margin}.. py:{entry.directive}:: {entry.signature}", *(inside + option for option in entry.options), ""]
+    lines = [
+        f"{margin}.. py:{entry.directive}:: {entry.signature}",
+        *(inside + option for option in entry.options),
+        "",
+    ]
     lines += [inside + line if line else "" for line in _text(entry.text)]
     lines.append("")
     for inner in entry.inner:

@@ -18,8 +18,16 @@ HERE = Path(__file__).resolve().parent
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Build the site; 0 if it is whole, 1 if rooms, links or pages are wrong."""
-    parser = argparse.ArgumentParser(prog="python -m deploy.docs.build", description="Build the site of the documentation.")
-    parser.add_argument("--out", type=Path, default=ROOT / "site", metavar="DIR", help="write the site here (default: %(default)s)")
+    parser = argparse.ArgumentParser(
+        prog="python -m deploy.docs.build", description="Build the site of the documentation."
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=ROOT / "site",
+        metavar="DIR",
+        help="write the site here (default: %(default)s)",
+    )
     arguments = parser.parse_args(argv)
     out = arguments.out.resolve()
     with tempfile.TemporaryDirectory(prefix="weldgate-docs-") as folder:
@@ -45,7 +53,21 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _sphinx(staged: Path, out: Path, doctrees: Path) -> int:
     from sphinx.cmd.build import build_main
 
-    return build_main(["-b", "html", "-W", "--keep-going", "-q", "-c", str(HERE), "-d", str(doctrees), str(staged), str(out)])
+    return build_main(
+        [
+            "-b",
+            "html",
+            "-W",
+            "--keep-going",
+            "-q",
+            "-c",
+            str(HERE),
+            "-d",
+            str(doctrees),
+            str(staged),
+            str(out),
+        ]
+    )
 
 
 def _failed(lines: Sequence[str]) -> int:

@@ -40,7 +40,9 @@ def levels_of(below: Mapping[str, Sequence[str]]) -> dict[str, int]:
     return found
 
 
-def draw(boxes: Sequence[Box], main: Sequence[tuple[str, str]], implied: Sequence[tuple[str, str]], title: str) -> str:
+def draw(
+    boxes: Sequence[Box], main: Sequence[tuple[str, str]], implied: Sequence[tuple[str, str]], title: str
+) -> str:
     """Return the SVG of a graph. `implied` arrows are shown for the box on which the pointer rests."""
     below: dict[str, list[str]] = {box.name: [] for box in boxes}
     for of, to in [*main, *implied]:
@@ -95,7 +97,9 @@ def _width(name: str) -> int:
     return BEND_W if name.startswith("~") else BOX_W
 
 
-def _rows(levels: Mapping[str, int], arrows: Sequence[tuple[str, str]]) -> tuple[dict[int, list[str]], list[list[str]]]:
+def _rows(
+    levels: Mapping[str, int], arrows: Sequence[tuple[str, str]]
+) -> tuple[dict[int, list[str]], list[list[str]]]:
     """Return the nodes of each level with the bends of long arrows, and each arrow as the chain of its points."""
     rows: dict[int, list[str]] = {level: [] for level in range(max(levels.values()) + 1)}
     for name in sorted(levels):
@@ -158,7 +162,10 @@ def _placed(rows: Mapping[int, Sequence[str]], chains: Sequence[Sequence[str]]) 
     for sweep in range(SWEEPS):
         levels = sorted(rows, reverse=sweep % 2 == 1)
         for level in levels:
-            wished = {name: _mean([xs[to] for to in (*up.get(name, []), *down.get(name, []))], xs[name]) for name in rows[level]}
+            wished = {
+                name: _mean([xs[to] for to in (*up.get(name, []), *down.get(name, []))], xs[name])
+                for name in rows[level]
+            }
             xs.update(_apart(rows[level], wished))
     return xs
 

@@ -7,7 +7,9 @@ from pathlib import Path
 
 _REMOTE = re.compile(r"^\s*(https?:)?//", re.IGNORECASE)
 _STYLE = re.compile(r"(?:url\(|@import)\s*[\"']?((?:https?:)?//[^\s\"')]+)", re.IGNORECASE)
-_SCRIPT = re.compile(r"(?:\bimport\s*\(?|\bfetch\(|\.src\s*=|importScripts\()\s*[\"'`]((?:https?:)?//[^\"'`]+)")
+_SCRIPT = re.compile(
+    r"(?:\bimport\s*\(?|\bfetch\(|\.src\s*=|importScripts\()\s*[\"'`]((?:https?:)?//[^\"'`]+)"
+)
 _NOT_LOADED = {"canonical", "next", "prev", "author", "license", "search", "index", "help", "alternate"}
 """Relations of a link element that name a page and load nothing."""
 

@@ -75,7 +75,9 @@ def rooms_of(modules: Iterable[str], imports: Iterable[Import], package: str) ->
         pair = room[one.importer], room[one.imported]
         if pair[0] != pair[1]:
             arrows.setdefault(pair, []).append(one)
-    touched = {name for pair in arrows for name in pair} | {name for name in inside if name.startswith(f"{package}/")}
+    touched = {name for pair in arrows for name in pair} | {
+        name for name in inside if name.startswith(f"{package}/")
+    }
     return Rooms(
         {name: tuple(found) for name, found in sorted(inside.items()) if name in touched},
         {pair: tuple(found) for pair, found in sorted(arrows.items())},
@@ -97,7 +99,11 @@ def _rooms(modules: list[str], imports: list[Import], package: str) -> dict[str,
             loose.append(module)
     reached = {module: [one.imported for one in imports if one.importer == module] for module in loose}
     ground = set(loose)
-    while above := {module for module in ground if any(to.startswith(package) and to not in ground for to in reached[module])}:
+    while above := {
+        module
+        for module in ground
+        if any(to.startswith(package) and to not in ground for to in reached[module])
+    }:
         ground -= above
     for module in loose:
         name = module.removeprefix(f"{package}.")
@@ -114,7 +120,9 @@ def contracts(pyproject: Path) -> list[Layers]:
     found: list[Layers] = []
     for contract in configured["contracts"]:
         if contract["type"] == "layers":
-            floors = tuple(frozenset(name.strip(" ()") for name in layer.split("|")) for layer in contract["layers"])
+            floors = tuple(
+                frozenset(name.strip(" ()") for name in layer.split("|")) for layer in contract["layers"]
+            )
             found += [Layers(container, floors) for container in contract.get("containers", [""])]
     return found
 
@@ -158,7 +166,9 @@ def _upward(rooms: Rooms, layers: list[Layers]) -> list[str]:
             for contract in layers:
                 high, low = contract.floor(one.importer), contract.floor(one.imported)
                 if high and low and high != low and low[0] <= high[0]:
-                    lines.append(f"arrow up: {file_of(one.importer)} imports {file_of(one.imported)}, which is not below it")
+                    lines.append(
+                        f"arrow up: {file_of(one.importer)} imports {file_of(one.imported)}, which is not below it"
+                    )
     return sorted(set(lines))
 
 
@@ -179,7 +189,11 @@ def without_implied(rooms: Rooms) -> list[tuple[str, str]]:
                 reached[room] |= {to} | all_below(to)
         return reached[room]
 
-    return [(of, to) for of, to in rooms.arrows if not any(to in all_below(between) for between in rooms.below(of) if between != to)]
+    return [
+        (of, to)
+        for of, to in rooms.arrows
+        if not any(to in all_below(between) for between in rooms.below(of) if between != to)
+    ]
 
 
 def sentence(room: str, rooms: Rooms, root: Path) -> str:

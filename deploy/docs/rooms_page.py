@@ -47,8 +47,15 @@ def _section(package: str, rooms: Rooms, root: Path) -> str:
     said = {name: found.sentence(name, rooms, root) for name in rooms.modules}
     main = found.without_implied(rooms)
     boxes = [Box(name, name.split("/")[-1], _family(name, package), said[name]) for name in rooms.modules]
-    drawing = draw(boxes, main, [pair for pair in rooms.arrows if pair not in main], f"Rooms of {package} and their imports")
-    rows = [f"| {_name(name)} | {len(rooms.modules[name])} | {said[name].replace('|', '/')} |" for name in own]
+    drawing = draw(
+        boxes,
+        main,
+        [pair for pair in rooms.arrows if pair not in main],
+        f"Rooms of {package} and their imports",
+    )
+    rows = [
+        f"| {_name(name)} | {len(rooms.modules[name])} | {said[name].replace('|', '/')} |" for name in own
+    ]
     return "\n".join(
         [
             "",

@@ -56,7 +56,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="screenshots", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("screenshots"), help="default: %(default)s")
     parser.add_argument("--size", default="1280x800", metavar="WxH", help="default: %(default)s")
-    parser.add_argument("--views", nargs="+", choices=[name for name, _, _ in VIEWS], default=[name for name, _, _ in VIEWS])
+    parser.add_argument(
+        "--views", nargs="+", choices=[name for name, _, _ in VIEWS], default=[name for name, _, _ in VIEWS]
+    )
     arguments = parser.parse_args(argv)
     width, height = (int(number) for number in arguments.size.split("x"))
     arguments.out.mkdir(parents=True, exist_ok=True)
@@ -89,7 +91,8 @@ def _station(folder: Path) -> Iterator[tuple[Path, Callable[[], None]]]:
     feed, ports = Feed(folder / "feed"), free_ports(4)
     settings = folder / "station.toml"
     settings.write_text(
-        station_toml(folder / "records", *ports) + '[golden]\ndue_h = 8\n[golden.masters]\n"MASTER-OK" = "OK"\n"MASTER-NOK" = "NOK"\n'
+        station_toml(folder / "records", *ports)
+        + '[golden]\ndue_h = 8\n[golden.masters]\n"MASTER-OK" = "OK"\n"MASTER-NOK" = "NOK"\n'
     )
     command = [sys.executable, "-m", "station", "engine", "-c", str(settings)]
     with (folder / "engine.log").open("w") as log, running(command, {**os.environ, **feed.environment}, log):
@@ -126,7 +129,10 @@ def _people(window: Window) -> None:
 
 
 def _reviews(window: Window) -> None:
-    folder, nok = window.session.received.folder, [part.record for part in window.session.received.parts if part.record.verdict == "NOK"]
+    folder, nok = (
+        window.session.received.folder,
+        [part.record for part in window.session.received.parts if part.record.verdict == "NOK"],
+    )
     for number in [record.inspection_id for record in nok[-2:]]:
         give(
             folder,
@@ -179,7 +185,9 @@ def _show(window: Window, view: str, page: PageKey, tab: int) -> None:
 def _save(window: Window, path: Path) -> None:
     picture = window.grab().toImage().convertToFormat(QImage.Format.Format_RGB888)  # must outlive its pixels
     pixels = np.frombuffer(picture.constBits(), np.uint8)
-    rows = pixels.reshape(picture.height(), -1)[:, : picture.width() * 3].reshape(picture.height(), picture.width(), 3)
+    rows = pixels.reshape(picture.height(), -1)[:, : picture.width() * 3].reshape(
+        picture.height(), picture.width(), 3
+    )
     cv2.imwrite(str(path), np.ascontiguousarray(rows[:, :, ::-1]), [cv2.IMWRITE_PNG_COMPRESSION, 9])
 
 
@@ -193,7 +201,9 @@ def _wait(until: Callable[[], bool], still: bool = False, patience_s: float = 60
 
 
 def _pause(seconds: float) -> None:
-    loop = QEventLoop()  # not QApplication.processEvents: in PySide6 6.12 it drops a reference to None each time
+    loop = (
+        QEventLoop()
+    )  # not QApplication.processEvents: in PySide6 6.12 it drops a reference to None each time
     QTimer.singleShot(int(seconds * 1000), loop.quit)
     loop.exec()
 

@@ -52,7 +52,10 @@ class Link:
 
 def pages(root: Path) -> dict[str, str]:
     """Return the pages that are written by hand: path in the repository, path in the site."""
-    own = {path.relative_to(root).as_posix(): path.relative_to(root / HERE).as_posix() for path in sorted((root / HERE).rglob("*.md"))}
+    own = {
+        path.relative_to(root).as_posix(): path.relative_to(root / HERE).as_posix()
+        for path in sorted((root / HERE).rglob("*.md"))
+    }
     return own | {source: target for source, target in ELSEWHERE.items() if (root / source).exists()}
 
 
@@ -111,7 +114,9 @@ def _turned(root: Path, folder: Path, known: Mapping[str, str], source: str, num
     return _LINK.sub(turned, line)
 
 
-def _written(root: Path, folder: Path, known: Mapping[str, str], way: tuple[str, str, str], found: re.Match[str]) -> str:
+def _written(
+    root: Path, folder: Path, known: Mapping[str, str], way: tuple[str, str, str], found: re.Match[str]
+) -> str:
     """Return a link as it stands in the site."""
     source, path, anchor = way
     text = found[2].replace("`", "")

@@ -8,4 +8,7 @@ from station.records import Record
 def defect_kinds(record: Record) -> list[DefectKind | None]:
     """Return the kind of defect seen in each segment, also where it was small enough to be tolerated."""
     limits = record.provenance.thresholds
-    return [segment_kind(scores, limits.of_segment(index)) for index, scores in enumerate(record.inspection.scores)]
+    return [
+        segment_kind(scores, limits.of_segment(index))
+        for index, scores in enumerate(record.inspection.scores)
+    ]

@@ -98,7 +98,10 @@ def _csv(target: Path, entries: list[Listed]) -> None:
 
 
 def _json(target: Path, entries: list[Listed]) -> None:
-    rows = [flat(e) | {"all_findings": [asdict(f) for f in e.record.inspection.findings] if e.record else []} for e in entries]
+    rows = [
+        flat(e) | {"all_findings": [asdict(f) for f in e.record.inspection.findings] if e.record else []}
+        for e in entries
+    ]
     target.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
 
@@ -126,7 +129,9 @@ def _all_ok(record: Record) -> Kinds:
     return dict.fromkeys(range(1, SEGMENTS + 1))
 
 
-def _reviewed(entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool]) -> Iterator[tuple[Path, str]]:
+def _reviewed(
+    entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool]
+) -> Iterator[tuple[Path, str]]:
     """The same of parts that two people agree on.
 
     Where they say it was a false call, all crops are ok; of a missed defect only the crops in which both see the same kind.
@@ -134,23 +139,40 @@ def _reviewed(entries: list[Listed], folder: Path, target: Path, going: Callable
     known = reviews(folder)
 
     def said(opinion: Opinion) -> list[Listed]:
-        return [e for e in entries if e.row.inspection_id in known and known[e.row.inspection_id].agreed is opinion]
+        return [
+            e
+            for e in entries
+            if e.row.inspection_id in known and known[e.row.inspection_id].agreed is opinion
+        ]
 
     def as_seen(record: Record) -> Kinds:
-        return {number: kind_of(reason) for number, reason in known[record.inspection_id].agreed_marks.items()}
+        return {
+            number: kind_of(reason) for number, reason in known[record.inspection_id].agreed_marks.items()
+        }
 
     missed = []
     for entry in said(Opinion.MISSED):
         if known[entry.row.inspection_id].agreed_marks:
             missed.append(entry)
         else:
-            yield entry.path, "a defect was missed: the two do not see the same kind in any segment, its crops are left out"
-    for those, kinds in ((said(Opinion.RIGHT), _as_judged), (said(Opinion.FALSE_CALL), _all_ok), (missed, as_seen)):
+            yield (
+                entry.path,
+                "a defect was missed: the two do not see the same kind in any segment, its crops are left out",
+            )
+    for those, kinds in (
+        (said(Opinion.RIGHT), _as_judged),
+        (said(Opinion.FALSE_CALL), _all_ok),
+        (missed, as_seen),
+    ):
         yield from _dataset(those, folder, target, going, kinds)
 
 
 def _dataset(
-    entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool], kinds: Callable[[Record], Kinds] = _as_judged
+    entries: list[Listed],
+    folder: Path,
+    target: Path,
+    going: Callable[[], bool],
+    kinds: Callable[[Record], Kinds] = _as_judged,
 ) -> Iterator[tuple[Path, str]]:
     """A folder each for ok and the kinds of defect: crops by what the station found, for people to correct before training."""
     for name in (OK_FOLDER, *(kind.name for kind in KINDS)):
@@ -172,7 +194,9 @@ def _dataset(
         crops = segments(strip)
         for number, kind in kinds(record).items():
             name = OK_FOLDER if kind is None else kind.name
-            (target / name / f"{record.inspection_id:08d}_{number:02d}.png").write_bytes(encode_png(crops[number - 1]))
+            (target / name / f"{record.inspection_id:08d}_{number:02d}.png").write_bytes(
+                encode_png(crops[number - 1])
+            )
 
 
 def _dfq(target: Path, entries: list[Listed]) -> None:
@@ -180,8 +204,18 @@ def _dfq(target: Path, entries: list[Listed]) -> None:
     judged = [e for e in entries if e.record is not None and e.record.inspection.scores]
     lines = [f"K0100 {SEGMENTS}", "K1001 weldgate", "K1002 circular laser weld"]
     for i in range(1, SEGMENTS + 1):
-        lines += [f"K2001/{i} {i}", f"K2002/{i} score of NOK, segment {i}", f"K2004/{i} 0", f"K2022/{i} 4", f"K2110/{i} 0"]
-        lines += [f"K2111/{i} {judged[0].record.provenance.thresholds.of_segment(i - 1).lowest:g}"] if judged and judged[0].record else []
+        lines += [
+            f"K2001/{i} {i}",
+            f"K2002/{i} score of NOK, segment {i}",
+            f"K2004/{i} 0",
+            f"K2022/{i} 4",
+            f"K2110/{i} 0",
+        ]
+        lines += (
+            [f"K2111/{i} {judged[0].record.provenance.thresholds.of_segment(i - 1).lowest:g}"]
+            if judged and judged[0].record
+            else []
+        )
     for entry in judged:
         if entry.record is not None:
             when = _qdas_time(entry.record.grabbed_at)

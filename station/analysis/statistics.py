@@ -97,6 +97,15 @@ def summarise(records: Iterable[Record]) -> Summary:
                 sum(ms for ms in (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms) if ms is not None),
             )
         )
-    groups = (Group(*key, c[Verdict.OK], c[Verdict.NOK], c[Verdict.ERROR]) for key, c in sorted(counts.items(), reverse=True))
+    groups = (
+        Group(*key, c[Verdict.OK], c[Verdict.NOK], c[Verdict.ERROR])
+        for key, c in sorted(counts.items(), reverse=True)
+    )
     limits = () if newest is None else tuple(limit.threshold for limit in newest.provenance.thresholds.kinds)
-    return Summary(tuple(groups), tuple(reasons.most_common()), tuple(segments), tuple(sorted(points, key=lambda p: p.number)), limits)
+    return Summary(
+        tuple(groups),
+        tuple(reasons.most_common()),
+        tuple(segments),
+        tuple(sorted(points, key=lambda p: p.number)),
+        limits,
+    )

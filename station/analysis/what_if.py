@@ -63,6 +63,13 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
         if (after is Verdict.OK) == (record.verdict is Verdict.OK):
             continue
         worst = max(range(len(inspection.scores)), key=lambda i: inspection.scores[i].nok)
-        flip = Flip(record.inspection_id, record.serial, record.verdict, after, worst + 1, inspection.scores[worst].nok)
+        flip = Flip(
+            record.inspection_id,
+            record.serial,
+            record.verdict,
+            after,
+            worst + 1,
+            inspection.scores[worst].nok,
+        )
         (released if after is Verdict.OK else refused).append(flip)
     return WhatIf(looked_at, tuple(released), tuple(refused), unknown)

@@ -36,7 +36,9 @@ class Pruned:
         return Pruned(self.frames + other.frames, self.records + other.records, self.bytes + other.bytes)
 
 
-def prune(folder: Path, keep: KeepSettings, now: datetime, dry: bool = False, stop: threading.Event | None = None) -> Pruned:
+def prune(
+    folder: Path, keep: KeepSettings, now: datetime, dry: bool = False, stop: threading.Event | None = None
+) -> Pruned:
     """Let go what is older than `keep` says, and the oldest pictures beyond the quota.
 
     Nothing goes while the newest record is more than a week old: then rather the clock is wrong. Raises RecordError.
@@ -80,7 +82,9 @@ def _old_frames(keep: KeepSettings) -> list[tuple[str, int]]:
 
 def _first_young(index: sqlite3.Connection, when: datetime) -> int:
     """Number of the first record that is not older: those before it are, whatever a wrong clock wrote into single ones."""
-    row = index.execute("SELECT MIN(inspection_id) FROM records WHERE grabbed_at >= ?", (when.isoformat(),)).fetchone()
+    row = index.execute(
+        "SELECT MIN(inspection_id) FROM records WHERE grabbed_at >= ?", (when.isoformat(),)
+    ).fetchone()
     return 1 << 62 if row[0] is None else int(row[0])
 
 
@@ -101,7 +105,9 @@ class _Work:
 
     def kept_bytes(self) -> int:
         """Of all pictures that stay."""
-        rows = self._index.execute("SELECT inspection_id, frame_file FROM records WHERE frame_state = 'kept' AND frame_file IS NOT NULL")
+        rows = self._index.execute(
+            "SELECT inspection_id, frame_file FROM records WHERE frame_state = 'kept' AND frame_file IS NOT NULL"
+        )
         return sum(_size(self._folder / name) for number, name in rows if number not in self._gone)
 
     def let_frames_go(self, condition: str, before: int, enough_bytes: float | None) -> Pruned:
@@ -124,7 +130,9 @@ class _Work:
             self._gone |= {number for number, _ in chosen}
             if not self._dry:
                 marks = [(number,) for number, _ in chosen]
-                self._index.executemany("UPDATE records SET frame_state = 'pruned' WHERE inspection_id = ?", marks)
+                self._index.executemany(
+                    "UPDATE records SET frame_state = 'pruned' WHERE inspection_id = ?", marks
+                )
             self._commit([name for _, name in chosen])
             if not rows:
                 break
@@ -140,7 +148,9 @@ class _Work:
                 f"WHERE inspection_id > ? AND inspection_id < ? ORDER BY 1 LIMIT {STEP}",
                 (after, before),
             ).fetchall()
-            names = [row[1] for row in rows] + [row[2] for row in rows if row[2] is not None and row[0] not in self._gone]
+            names = [row[1] for row in rows] + [
+                row[2] for row in rows if row[2] is not None and row[0] not in self._gone
+            ]
             done += Pruned(0, len(rows), sum(_size(self._folder / name) for name in names))
             if rows and not self._dry:
                 last, marks = rows[-1], [(row[0],) for row in rows]
@@ -201,7 +211,12 @@ class Housekeeping:
             try:
                 done = prune(self._folder, self._keep, datetime.now(UTC), stop=self._stop)
                 if done.frames or done.records:
-                    log.info("let go: %d pictures, %d records, %.1f GB", done.frames, done.records, done.bytes / 1e9)
+                    log.info(
+                        "let go: %d pictures, %d records, %.1f GB",
+                        done.frames,
+                        done.records,
+                        done.bytes / 1e9,
+                    )
             except RecordError as error:
                 log.error("%s", error)
             except Exception:  # the thread must live: without it the disk fills

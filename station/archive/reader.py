@@ -90,10 +90,20 @@ def find(folder: Path, wanted: Wanted = Wanted()) -> list[Row]:
     join = " JOIN segments s ON s.inspection_id = r.inspection_id" if joined else ""
     with closing(read_index(folder)) as connection:
         try:
-            rows = connection.execute(f"SELECT {names} FROM records r{join}{where}{order}{limit}", values).fetchall()
+            rows = connection.execute(
+                f"SELECT {names} FROM records r{join}{where}{order}{limit}", values
+            ).fetchall()
         except sqlite3.Error as error:
             raise RecordError(f"{folder}: the index cannot be read ({error})") from None
-    return [Row(**{**dict(row), "shown_to_plc": None if row["shown_to_plc"] is None else bool(row["shown_to_plc"])}) for row in rows]
+    return [
+        Row(
+            **{
+                **dict(row),
+                "shown_to_plc": None if row["shown_to_plc"] is None else bool(row["shown_to_plc"]),
+            }
+        )
+        for row in rows
+    ]
 
 
 def _conditions(wanted: Wanted) -> tuple[list[str], list[str | float]]:
@@ -112,7 +122,9 @@ def _conditions(wanted: Wanted) -> tuple[list[str], list[str | float]]:
         chosen += [("r.serial >= ?", wanted.serial[:-1]), ("r.serial < ?", wanted.serial[:-1] + "\U0010ffff")]
     else:
         chosen.append(("r.serial = ?", wanted.serial))
-    return [condition for condition, value in chosen if value is not None], [value for _, value in chosen if value is not None]
+    return [condition for condition, value in chosen if value is not None], [
+        value for _, value in chosen if value is not None
+    ]
 
 
 def read_records(folder: Path, wanted: Wanted = Wanted()) -> Iterator[Listed]:
@@ -149,7 +161,11 @@ def _frame_problem(folder: Path, row: Row, record: Record) -> str | None:
         png = (folder / row.frame_file).read_bytes()
     except OSError as error:
         return f"its frame {row.frame_file} cannot be read ({error.strerror})"
-    return None if hashlib.sha256(png).hexdigest() == record.frame_sha256 else f"its frame {row.frame_file} was changed"
+    return (
+        None
+        if hashlib.sha256(png).hexdigest() == record.frame_sha256
+        else f"its frame {row.frame_file} was changed"
+    )
 
 
 def verify(folder: Path) -> Iterator[tuple[str, str]]:
@@ -170,7 +186,11 @@ def verify(folder: Path) -> Iterator[tuple[str, str]]:
     listed = {name for row in rows for name in (row.record_file, row.frame_file) if name is not None}
     for path in sorted(folder.glob("????-??-??/*")):
         name = path.relative_to(folder).as_posix()
-        if name not in listed and not path.name.endswith(".part") and not _being_written(folder, path, before):
+        if (
+            name not in listed
+            and not path.name.endswith(".part")
+            and not _being_written(folder, path, before)
+        ):
             yield name, "is not listed: left by a stop in the middle of a part, or put here"
 
 
@@ -192,7 +212,13 @@ def _problems(folder: Path, row: Row, chain: str) -> Iterator[str]:
         yield problem
     if record is not None:
         inspection = record.inspection
-        said = (record.serial, record.trigger_id, record.grabbed_at.isoformat(), str(record.verdict), record.frame_file)
+        said = (
+            record.serial,
+            record.trigger_id,
+            record.grabbed_at.isoformat(),
+            str(record.verdict),
+            record.frame_file,
+        )
         listed = (row.serial, row.trigger_id, row.grabbed_at, row.verdict, row.frame_file)
         reason = None if inspection.reason is None else str(inspection.reason)
         if said != listed or (reason, str(record.purpose)) != (row.reason, row.purpose):
@@ -207,7 +233,9 @@ def _problems(folder: Path, row: Row, chain: str) -> Iterator[str]:
 def _let_go(folder: Path) -> tuple[str, int]:
     with closing(read_index(folder)) as connection:
         try:
-            row = connection.execute("SELECT chain, inspection_id FROM let_go ORDER BY inspection_id DESC LIMIT 1").fetchone()
+            row = connection.execute(
+                "SELECT chain, inspection_id FROM let_go ORDER BY inspection_id DESC LIMIT 1"
+            ).fetchone()
         except sqlite3.Error as error:
             raise RecordError(f"{folder}: the index cannot be read ({error})") from None
     return (CHAIN_START, 0) if row is None else (row["chain"], row["inspection_id"])

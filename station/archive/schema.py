@@ -81,7 +81,9 @@ def open_index(folder: Path) -> sqlite3.Connection:
                     connection.execute(f"ALTER TABLE records ADD COLUMN {name} {kind}")
             for statement in SCHEMA.split(";"):
                 connection.execute(statement)
-            connection.execute("UPDATE records SET frame_state = 'none' WHERE frame_file IS NULL AND frame_state = 'kept'")
+            connection.execute(
+                "UPDATE records SET frame_state = 'none' WHERE frame_file IS NULL AND frame_state = 'kept'"
+            )
             connection.execute(f"PRAGMA user_version = {VERSION}")
     except BaseException:
         connection.close()
@@ -101,7 +103,9 @@ def read_index(folder: Path) -> sqlite3.Connection:
         raise RecordError(f"{path}: not a readable index ({error})") from None
     if version != VERSION:
         connection.close()
-        raise RecordError(f"{path}: index of version {version}, needed {VERSION}; an engine that opens it brings an older one up to date")
+        raise RecordError(
+            f"{path}: index of version {version}, needed {VERSION}; an engine that opens it brings an older one up to date"
+        )
     connection.row_factory = sqlite3.Row
     return connection
 

@@ -53,7 +53,9 @@ class Archive:
             self._folder.mkdir(parents=True, exist_ok=True)
             self._lock = hold(self._folder / "engine.lock")
         except BlockingIOError:
-            raise RecordError(f"{self._folder}: another engine keeps its records there; stop it or set archive.folder") from None
+            raise RecordError(
+                f"{self._folder}: another engine keeps its records there; stop it or set archive.folder"
+            ) from None
         except OSError as error:
             raise self._unusable(error) from None
         try:
@@ -84,7 +86,9 @@ class Archive:
         return 1 + (row[0] if row else 0)
 
     def _unusable(self, error: Exception) -> RecordError:
-        return RecordError(f"{self._folder}: records cannot be kept there ({error}); set archive.folder to a writable folder")
+        return RecordError(
+            f"{self._folder}: records cannot be kept there ({error}); set archive.folder to a writable folder"
+        )
 
     def close(self) -> None:
         """Finish and close the index."""
@@ -130,7 +134,9 @@ class Archive:
         write_whole(path, png, durable=True)
         return Picture(sha256, path)
 
-    def commit(self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime) -> Record:
+    def commit(
+        self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime
+    ) -> Record:
         """Make the record durable and return it. Raises RecordError; then nothing is listed."""
         try:
             return self._commit(pending, inspection, part, provenance, now)
@@ -144,11 +150,17 @@ class Archive:
         """Note whether the PLC was shown this verdict; NULL: the station stopped before it could tell. Raises RecordError."""
         try:
             with self._index:
-                self._index.execute("UPDATE records SET shown_to_plc = ? WHERE inspection_id = ?", (shown, inspection_id))
+                self._index.execute(
+                    "UPDATE records SET shown_to_plc = ? WHERE inspection_id = ?", (shown, inspection_id)
+                )
         except sqlite3.Error as error:
-            raise RecordError(f"{self._folder}: record {inspection_id} could not be marked: {error}") from None
+            raise RecordError(
+                f"{self._folder}: record {inspection_id} could not be marked: {error}"
+            ) from None
 
-    def _commit(self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime) -> Record:
+    def _commit(
+        self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime
+    ) -> Record:
         inspection_id = self._next_id()
         day = self._folder / f"{now:%Y-%m-%d}"
         if not day.exists():
@@ -191,7 +203,11 @@ class Archive:
         inspection = record.inspection
         chain = link(self._chain, sha256)
         worst = max((s.nok for s in inspection.scores), default=None)
-        found = [(record.inspection_id, i, s.nok) for i, s in enumerate(inspection.scores, start=1) if s.nok >= SEARCHABLE_SCORE]
+        found = [
+            (record.inspection_id, i, s.nok)
+            for i, s in enumerate(inspection.scores, start=1)
+            if s.nok >= SEARCHABLE_SCORE
+        ]
         values = {
             "inspection_id": record.inspection_id,
             "serial": record.serial,

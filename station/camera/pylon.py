@@ -35,7 +35,9 @@ class PylonCamera:
         except genicam.GenericException as error:
             if camera is not None:
                 _release(camera)
-            raise CameraLost(f"camera {s.serial} ({s.device_class}): {_first_line(error)}; check power, cable and camera.serial") from None
+            raise CameraLost(
+                f"camera {s.serial} ({s.device_class}): {_first_line(error)}; check power, cable and camera.serial"
+            ) from None
         self._camera = camera
 
     def grab(self) -> Frame:
@@ -98,7 +100,9 @@ class PylonCamera:
             _flush(camera)
             raise FrameTimeout(f"camera {s.serial}: no frame within {s.timeout_ms} ms")
         if not result.GrabSucceeded():
-            raise FrameDamaged(f"camera {s.serial}: frame incompletely grabbed ({result.GetErrorDescription() or 'no description'})")
+            raise FrameDamaged(
+                f"camera {s.serial}: frame incompletely grabbed ({result.GetErrorDescription() or 'no description'})"
+            )
         if (result.Width, result.Height) != (s.width_px, s.height_px):
             size = f"{result.Width} x {result.Height} px, set are {s.width_px} x {s.height_px}"
             raise FrameDamaged(f"camera {s.serial}: frame is {size}", wrong_size=True)
@@ -142,4 +146,8 @@ def _release(camera: pylon.InstantCamera) -> None:
 
 
 def _first_line(error: BaseException) -> str:
-    return str(error).strip().splitlines()[0].split(" : ")[0][:160] if str(error).strip() else type(error).__name__
+    return (
+        str(error).strip().splitlines()[0].split(" : ")[0][:160]
+        if str(error).strip()
+        else type(error).__name__
+    )

@@ -24,7 +24,9 @@ class ReplayCamera:
         try:
             names = sorted(p.name for p in self._folder.iterdir() if p.suffix.lower() in SUFFIXES)
         except OSError as error:
-            raise CameraLost(f"{self._folder}: cannot be read ({error.strerror}); set camera.folder") from None
+            raise CameraLost(
+                f"{self._folder}: cannot be read ({error.strerror}); set camera.folder"
+            ) from None
         if not names:
             raise CameraLost(f"{self._folder}: holds no images; set camera.folder")
         self._files = names

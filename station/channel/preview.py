@@ -19,9 +19,17 @@ def make_preview(inspection_id: int, image: Image, ring: Ring | None) -> Preview
     reach = ring.radius_px + STRIP_ROWS / 2 + MARGIN_PX
     left, top = max(0, int(ring.center_x_px - reach)), max(0, int(ring.center_y_px - reach))
     right, bottom = min(width, int(ring.center_x_px + reach)), min(height, int(ring.center_y_px + reach))
-    return Preview(inspection_id, SCALE, (left, top), _jpeg(image[top:bottom, left:right], SCALE), _jpeg(unwrap(image, ring), 1.0))
+    return Preview(
+        inspection_id,
+        SCALE,
+        (left, top),
+        _jpeg(image[top:bottom, left:right], SCALE),
+        _jpeg(unwrap(image, ring), 1.0),
+    )
 
 
 def _jpeg(image: Image, scale: float) -> bytes:
-    small = image if scale == 1.0 else cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    small = (
+        image if scale == 1.0 else cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    )
     return bytes(cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 85])[1])

@@ -32,13 +32,17 @@ def _address(settings: ChannelSettings, port: int) -> str:
     return f"tcp://{host}:{port}"
 
 
-def _bind(context: "zmq.Context[zmq.Socket[bytes]]", socket: "zmq.Socket[bytes]", address: str, key: str) -> None:
+def _bind(
+    context: "zmq.Context[zmq.Socket[bytes]]", socket: "zmq.Socket[bytes]", address: str, key: str
+) -> None:
     """Listen; if the port is taken nothing stays open. Raises LineError."""
     try:
         socket.bind(address)
     except zmq.ZMQError as error:
         context.destroy(linger=0)
-        raise LineError(f"channel cannot listen on {address} ({error}); free it or set channel.{key}") from None
+        raise LineError(
+            f"channel cannot listen on {address} ({error}); free it or set channel.{key}"
+        ) from None
 
 
 class Publisher:
@@ -166,7 +170,12 @@ class RequestClient:
         """Connect, and reconnect whenever the engine is back."""
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.DEALER)
-        for option, value in ((zmq.IMMEDIATE, 1), (zmq.SNDHWM, 100), (zmq.IPV6, 1), (zmq.RECONNECT_IVL_MAX, 1000)):
+        for option, value in (
+            (zmq.IMMEDIATE, 1),
+            (zmq.SNDHWM, 100),
+            (zmq.IPV6, 1),
+            (zmq.RECONNECT_IVL_MAX, 1000),
+        ):
             self._socket.setsockopt(option, value)
         self._socket.connect(_address(settings, settings.requests_port))
 

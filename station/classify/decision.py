@@ -38,7 +38,9 @@ def mean_of(views: Sequence[SegmentScores]) -> SegmentScores:
     rows = [[log(max(p, 1e-9)) for p in (view.ok, *(view.defects[kind] for kind in kinds))] for view in views]
     means = [exp(sum(column) / len(views)) for column in zip(*rows, strict=True)]
     total = reduce(add, means)  # left to right: the same bits on every version of Python
-    return SegmentScores(means[0] / total, {kind: mean / total for kind, mean in zip(kinds, means[1:], strict=True)})
+    return SegmentScores(
+        means[0] / total, {kind: mean / total for kind, mean in zip(kinds, means[1:], strict=True)}
+    )
 
 
 def findings(
@@ -71,13 +73,20 @@ def findings(
     return tuple(sorted(found, key=lambda f: f.start_deg))
 
 
-def rejected_kinds(scores: Sequence[SegmentScores], found: Sequence[Finding], thresholds: Thresholds) -> tuple[Reason | None, ...]:
+def rejected_kinds(
+    scores: Sequence[SegmentScores], found: Sequence[Finding], thresholds: Thresholds
+) -> tuple[Reason | None, ...]:
     """Return for each segment the kind of defect that rejects it: over its threshold, and not for tolerated findings alone."""
     kinds = [segment_kind(s, thresholds.of_segment(i)) for i, s in enumerate(scores)]
-    return tuple(None if kind is None or _tolerated(i, kind, scores[i], found, thresholds) else kind.reason for i, kind in enumerate(kinds))
+    return tuple(
+        None if kind is None or _tolerated(i, kind, scores[i], found, thresholds) else kind.reason
+        for i, kind in enumerate(kinds)
+    )
 
 
-def _tolerated(index: int, kind: DefectKind, scores: SegmentScores, found: Sequence[Finding], thresholds: Thresholds) -> bool:
+def _tolerated(
+    index: int, kind: DefectKind, scores: SegmentScores, found: Sequence[Finding], thresholds: Thresholds
+) -> bool:
     """Return whether all of a kind in a segment and its neighbours was measured and is together shorter than the minimum length.
 
     Never true where another kind is over its threshold: the map was not asked for that kind.
@@ -94,16 +103,23 @@ def _tolerated(index: int, kind: DefectKind, scores: SegmentScores, found: Seque
 
 
 def _reaches(finding: Finding, start_deg: float, end_deg: float) -> bool:
-    return any(finding.start_deg < end_deg + turn and finding.end_deg > start_deg + turn for turn in (-360.0, 0.0, 360.0))
+    return any(
+        finding.start_deg < end_deg + turn and finding.end_deg > start_deg + turn
+        for turn in (-360.0, 0.0, 360.0)
+    )
 
 
-def _measured(kind: DefectKind, extent: Extent, scores: Sequence[SegmentScores], ring: Ring, um_per_px: float) -> Finding:
+def _measured(
+    kind: DefectKind, extent: Extent, scores: Sequence[SegmentScores], ring: Ring, um_per_px: float
+) -> Finding:
     """Measure an area of the map; its length is taken along the weld at the defect's own radius."""
     mm_per_px = um_per_px / 1000
     radius_px = ring.radius_px + STRIP_ROWS / 2 - (extent.top_px + extent.bottom_px) / 2
     columns = extent.end_px - extent.start_px
     stretch = radius_px * 2 * pi / STRIP_COLUMNS
-    width_px = extent.bottom_px - extent.top_px if kind.width is Width.EDGE_TO_EDGE else extent.area_px2 / columns
+    width_px = (
+        extent.bottom_px - extent.top_px if kind.width is Width.EDGE_TO_EDGE else extent.area_px2 / columns
+    )
     return Finding(
         kind=kind.reason,
         start_deg=extent.start_px * DEG_PER_PX,
@@ -115,7 +131,9 @@ def _measured(kind: DefectKind, extent: Extent, scores: Sequence[SegmentScores],
     )
 
 
-def _whole_segments(kinds: Sequence[DefectKind | None], scores: Sequence[SegmentScores], ring: Ring, um_per_px: float) -> list[Finding]:
+def _whole_segments(
+    kinds: Sequence[DefectKind | None], scores: Sequence[SegmentScores], ring: Ring, um_per_px: float
+) -> list[Finding]:
     starts = [i for i in range(SEGMENTS) if kinds[i] is not None and kinds[i - 1] != kinds[i]]
     if not starts and kinds[0] is not None:
         starts = [0]
@@ -128,5 +146,7 @@ def _whole_segments(kinds: Sequence[DefectKind | None], scores: Sequence[Segment
         if kind is not None:
             arc_mm = length * SEGMENT_DEG * pi / 180 * ring.radius_px * um_per_px / 1000
             score = max(scores[(start + i) % SEGMENTS].nok for i in range(length))
-            found.append(Finding(kind.reason, start * SEGMENT_DEG, (start + length) * SEGMENT_DEG, arc_mm, score))
+            found.append(
+                Finding(kind.reason, start * SEGMENT_DEG, (start + length) * SEGMENT_DEG, arc_mm, score)
+            )
     return found

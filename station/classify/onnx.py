@@ -29,7 +29,13 @@ MAPPED = tuple(kind for kind in KINDS if kind.is_mapped)
 """Kinds of defect of a network that is trained today, in the order of its defect map's channels."""
 LOOK = 192
 """Length of the vector that tells what a crop looks like."""
-METADATA_KEYS = ("weldgate.classes", "weldgate.thresholds", "weldgate.novelty_limit", "weldgate.data_hash", "weldgate.version")
+METADATA_KEYS = (
+    "weldgate.classes",
+    "weldgate.thresholds",
+    "weldgate.novelty_limit",
+    "weldgate.data_hash",
+    "weldgate.version",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +78,9 @@ class Network:
         try:
             blob = path.read_bytes()
         except OSError as error:
-            raise ModelError(f"{path}: model cannot be read ({error.strerror}); name a weldgate .onnx file in the settings") from None
+            raise ModelError(
+                f"{path}: model cannot be read ({error.strerror}); name a weldgate .onnx file in the settings"
+            ) from None
         options = ort.SessionOptions()
         options.intra_op_num_threads = threads
         options.inter_op_num_threads = 1
@@ -81,7 +89,9 @@ class Network:
         try:
             self.session = ort.InferenceSession(blob, options, providers=["CPUExecutionProvider"])
         except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
-            raise ModelError(f"{path}: not a readable ONNX model ({str(error).splitlines()[0][:120]}); restore the file") from None
+            raise ModelError(
+                f"{path}: not a readable ONNX model ({str(error).splitlines()[0][:120]}); restore the file"
+            ) from None
         self.file_hash = hashlib.sha256(blob).hexdigest()
 
     def run(self, outputs: tuple[str, ...], inputs: dict[str, NDArray[Any]]) -> list[NDArray[np.float32]]:
@@ -108,11 +118,17 @@ class Classifier:
         mapped = tuple(kind for kind in kinds if kind.is_mapped)
         shapes = ((count, 1 + len(kinds)), (count, len(mapped), CELLS, CELLS), (count, LOOK))
         if (p.shape, maps.shape, looks.shape) != shapes:
-            raise ModelError(f"inference gave no probabilities, maps and looks (shapes {p.shape}, {maps.shape}, {looks.shape})")
-        sound = all(((a >= 0) & (a <= 1)).all() for a in (p, maps)) and bool((np.abs(p.sum(axis=1) - 1) <= 1e-3).all())
+            raise ModelError(
+                f"inference gave no probabilities, maps and looks (shapes {p.shape}, {maps.shape}, {looks.shape})"
+            )
+        sound = all(((a >= 0) & (a <= 1)).all() for a in (p, maps)) and bool(
+            (np.abs(p.sum(axis=1) - 1) <= 1e-3).all()
+        )
         if not (sound and np.isfinite(looks).all()):
             raise ModelError("inference gave numbers that are no probabilities")
-        scores = (SegmentScores(float(row[0]), dict(zip(kinds, map(float, row[1:]), strict=True))) for row in p)
+        scores = (
+            SegmentScores(float(row[0]), dict(zip(kinds, map(float, row[1:]), strict=True))) for row in p
+        )
         return Judged(tuple(scores), maps, mapped, looks)
 
 
@@ -148,7 +164,9 @@ def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: li
     inputs = session.get_inputs()
     got = list(inputs[0].shape[1:])
     if len(inputs) != 1 or inputs[0].name != name or inputs[0].type != "tensor(uint8)" or got != shape:
-        raise ModelError(f"{path}: input is {inputs[0].name} {inputs[0].type} {got}, needed {name} tensor(uint8) {shape}")
+        raise ModelError(
+            f"{path}: input is {inputs[0].name} {inputs[0].type} {got}, needed {name} tensor(uint8) {shape}"
+        )
 
 
 def _card(path: Path, network: Network) -> ModelCard:
@@ -156,17 +174,25 @@ def _card(path: Path, network: Network) -> ModelCard:
     metadata = session.get_modelmeta().custom_metadata_map
     missing = [key for key in METADATA_KEYS if key not in metadata]
     if missing:
-        raise ModelError(f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; make one with weldgate-models train")
+        raise ModelError(
+            f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; make one with weldgate-models train"
+        )
     _check_input(path, session, "crops", [1, SEGMENT_PX, SEGMENT_PX])
     lacking = {"probabilities", "maps", "looks"} - {o.name for o in session.get_outputs()}
     if lacking:
-        raise ModelError(f"{path}: has no output {', '.join(sorted(lacking))}; make one with weldgate-models train")
+        raise ModelError(
+            f"{path}: has no output {', '.join(sorted(lacking))}; make one with weldgate-models train"
+        )
     try:
         classes = [str(name) for name in json.loads(metadata["weldgate.classes"])]
-        thresholds = {str(name): float(value) for name, value in json.loads(metadata["weldgate.thresholds"]).items()}
+        thresholds = {
+            str(name): float(value) for name, value in json.loads(metadata["weldgate.thresholds"]).items()
+        }
         limit = float(json.loads(metadata["weldgate.novelty_limit"]))
     except (ValueError, AttributeError, TypeError):
-        raise ModelError(f"{path}: metadata cannot be read; make it again with weldgate-models train") from None
+        raise ModelError(
+            f"{path}: metadata cannot be read; make it again with weldgate-models train"
+        ) from None
     if not 0 < limit < float("inf"):
         raise ModelError(f"{path}: novelty limit {limit} must be above 0")
     return ModelCard(
@@ -181,11 +207,15 @@ def _card(path: Path, network: Network) -> ModelCard:
 def _thresholds(path: Path, classes: list[str], thresholds: dict[str, float]) -> Thresholds:
     """Return the thresholds of a file's kinds of defect in the order of its classes."""
     if not (len(classes) > 1 and classes[0] == OK and len(set(classes)) == len(classes)):
-        raise ModelError(f"{path}: classes are {classes}, needed {OK} and then kinds of defect; make the model again")
+        raise ModelError(
+            f"{path}: classes are {classes}, needed {OK} and then kinds of defect; make the model again"
+        )
     try:
         kinds = [kind_named(name) for name in classes[1:]]
     except ValueError as error:
         raise ModelError(f"{path}: {error}; update weldgate, or name another model") from None
     if set(thresholds) != set(classes[1:]) or not all(0 < value < 1 for value in thresholds.values()):
-        raise ModelError(f"{path}: thresholds {thresholds} must lie between 0 and 1, one for each of {classes[1:]}")
+        raise ModelError(
+            f"{path}: thresholds {thresholds} must lie between 0 and 1, one for each of {classes[1:]}"
+        )
     return Thresholds(tuple(Limit(kind, thresholds[kind.name]) for kind in kinds))

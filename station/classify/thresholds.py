@@ -30,7 +30,9 @@ class Thresholds:
     def of_segment(self, index: int) -> "Thresholds":
         """Return the limits that apply to one segment, 0 to 20."""
         own = dict(self.segments).get(index + 1)
-        return self if own is None else Thresholds(tuple(replace(limit, threshold=own) for limit in self.kinds))
+        return (
+            self if own is None else Thresholds(tuple(replace(limit, threshold=own) for limit in self.kinds))
+        )
 
     def of(self, kind: DefectKind) -> Limit:
         """Return the limits of one kind of defect. Raises KeyError if the classifier does not know it."""
@@ -45,7 +47,9 @@ class Thresholds:
         return min(limit.threshold for limit in self.kinds)
 
 
-def in_use(of_model: Thresholds, limits: Mapping[str, LimitSettings], segments: Mapping[int, float]) -> Thresholds:
+def in_use(
+    of_model: Thresholds, limits: Mapping[str, LimitSettings], segments: Mapping[int, float]
+) -> Thresholds:
     """Return the limits of a model file with those of the settings laid over them.
 
     Raises SettingsError if the settings limit a kind of defect that the model does not know.
@@ -53,7 +57,9 @@ def in_use(of_model: Thresholds, limits: Mapping[str, LimitSettings], segments: 
     unknown = sorted(set(limits) - {limit.kind.name for limit in of_model.kinds})
     if unknown:
         known = ", ".join(limit.kind.name for limit in of_model.kinds)
-        raise SettingsError(f"model.limits.{unknown[0]}: the classifier does not know this kind of defect; it knows {known}")
+        raise SettingsError(
+            f"model.limits.{unknown[0]}: the classifier does not know this kind of defect; it knows {known}"
+        )
     kinds = []
     for limit in of_model.kinds:
         own = limits.get(limit.kind.name, LimitSettings())

@@ -42,8 +42,14 @@ def _archive(settings: Settings) -> None:
     try:
         room = archive.room()
         if room is not Room.ENOUGH:
-            limit = (settings.archive.min_free_mb, settings.archive.thin_free_mb, settings.archive.warn_free_mb)[room]
-            raise WeldgateError(f"{settings.archive.folder}: less than {limit} MB free; make room, or keep less under archive.keep")
+            limit = (
+                settings.archive.min_free_mb,
+                settings.archive.thin_free_mb,
+                settings.archive.warn_free_mb,
+            )[room]
+            raise WeldgateError(
+                f"{settings.archive.folder}: less than {limit} MB free; make room, or keep less under archive.keep"
+            )
     finally:
         archive.close()
 
@@ -68,7 +74,9 @@ def _reached(host: str, port: int) -> None:
     try:
         socket.create_connection((host, port), timeout=2).close()
     except OSError as error:
-        raise WeldgateError(f"PLC {host}:{port} cannot be reached ({error}); check address, cable and firewall, or set plc.host") from None
+        raise WeldgateError(
+            f"PLC {host}:{port} cannot be reached ({error}); check address, cable and firewall, or set plc.host"
+        ) from None
 
 
 def _free(settings: Settings) -> None:

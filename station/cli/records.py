@@ -30,8 +30,17 @@ def add_commands(records: argparse.ArgumentParser) -> None:
 
     _search_options(add("list", _list, "list records, all or those that are looked for"))
     add("verify", _verify, "name missing, altered and taken out records")
-    prune = add("prune", _prune, "let go what the settings do not keep any longer; the engine does so every hour")
-    prune.add_argument("-c", "--settings", type=Path, default=Path("station.toml"), metavar="FILE", help="default: %(default)s")
+    prune = add(
+        "prune", _prune, "let go what the settings do not keep any longer; the engine does so every hour"
+    )
+    prune.add_argument(
+        "-c",
+        "--settings",
+        type=Path,
+        default=Path("station.toml"),
+        metavar="FILE",
+        help="default: %(default)s",
+    )
     prune.add_argument("--dry-run", action="store_true", help="say what would go, change nothing")
     export = add("export", _export, "write records in another form")
     export.add_argument("target", type=Path, metavar="TARGET", help="file, or folder for dataset")
@@ -40,19 +49,37 @@ def add_commands(records: argparse.ArgumentParser) -> None:
     report = add("report", _report, "write a report: yield, findings by angle, trends, NOK parts, who judged")
     report.add_argument("target", type=Path, metavar="FILE", help=".html, with everything in it, or .pdf")
     report.add_argument("--title", default="weldgate: report", help="default: %(default)s")
-    report.add_argument("--truth", type=Path, metavar="FILE", help="what the parts are: CSV with name (serial) and verdict, or JSON")
+    report.add_argument(
+        "--truth",
+        type=Path,
+        metavar="FILE",
+        help="what the parts are: CSV with name (serial) and verdict, or JSON",
+    )
     _search_options(report)
     add("bus", _bus, "print the edges on the PLC bus, and what was against the rules")
 
 
 def _search_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--serial", metavar="TEXT", help="exactly, or its beginning with * behind it")
-    parser.add_argument("--since", type=_time, metavar="TIME", help="2026-11-22, or 2026-11-22T14:00; UTC unless it says otherwise")
+    parser.add_argument(
+        "--since",
+        type=_time,
+        metavar="TIME",
+        help="2026-11-22, or 2026-11-22T14:00; UTC unless it says otherwise",
+    )
     parser.add_argument("--until", type=_time, metavar="TIME", help="before this time")
     parser.add_argument("--verdict", choices=("OK", "NOK", "ERROR"))
     parser.add_argument("--reason", metavar="NAME", help="as the list prints it")
-    parser.add_argument("--segment", type=int, choices=range(1, 22), metavar="N", help="1 to 21, with a score of at least --score")
-    parser.add_argument("--score", type=float, metavar="P", help="score of NOK of the segment, or of the worst; from 0.05")
+    parser.add_argument(
+        "--segment",
+        type=int,
+        choices=range(1, 22),
+        metavar="N",
+        help="1 to 21, with a score of at least --score",
+    )
+    parser.add_argument(
+        "--score", type=float, metavar="P", help="score of NOK of the segment, or of the worst; from 0.05"
+    )
     parser.add_argument("--last", type=int, metavar="N", help="the newest only")
 
 
@@ -60,7 +87,9 @@ def _time(text: str) -> datetime:
     try:
         when = datetime.fromisoformat(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no time; write 2026-11-22 or 2026-11-22T14:00") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no time; write 2026-11-22 or 2026-11-22T14:00"
+        ) from None
     return when.replace(tzinfo=UTC) if when.tzinfo is None else when.astimezone(UTC)
 
 
@@ -92,7 +121,11 @@ def _list(arguments: argparse.Namespace) -> int:
 
 def _line(row: "Row") -> str:
     late = {True: "", False: "not shown to the PLC", None: "unknown whether the PLC saw it"}[row.shown_to_plc]
-    notes = [row.reason or "", "" if row.purpose == "part" else row.purpose, late if row.purpose != "test" else ""]
+    notes = [
+        row.reason or "",
+        "" if row.purpose == "part" else row.purpose,
+        late if row.purpose != "test" else "",
+    ]
     notes.append("" if row.frame_state in ("kept", "none") else f"picture {row.frame_state}")
     worst = "     " if row.worst_score is None else f"{row.worst_score:5.3f}"
     said = ", ".join(note for note in notes if note)
@@ -107,7 +140,9 @@ def _verify(arguments: argparse.Namespace) -> int:
     for name, problem in chain(verify(arguments.folder), verify_journal(arguments.folder)):
         bad += 1
         print(f"weldgate: {arguments.folder}: {name}: {problem}", file=sys.stderr)
-    print(f"{len(find(arguments.folder))} records, {len(entries(arguments.folder))} entries of the journal, {bad} problems")
+    print(
+        f"{len(find(arguments.folder))} records, {len(entries(arguments.folder))} entries of the journal, {bad} problems"
+    )
     return 1 if bad else 0
 
 
@@ -129,7 +164,12 @@ def _export(arguments: argparse.Namespace) -> int:
     if not arguments.target.resolve().parent.is_dir():
         raise RecordError(f"{arguments.target}: its folder does not exist")
     bad = 0
-    for path, problem in export(read_records(arguments.folder, _wanted(arguments)), arguments.folder, arguments.target, arguments.format):
+    for path, problem in export(
+        read_records(arguments.folder, _wanted(arguments)),
+        arguments.folder,
+        arguments.target,
+        arguments.format,
+    ):
         bad += 1
         print(f"weldgate: {path}: {problem}", file=sys.stderr)
     print(arguments.target)

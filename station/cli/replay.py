@@ -87,7 +87,11 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
 
 
 def _settings(arguments: argparse.Namespace, shipped: Path) -> Settings:
-    settings = for_recipe(for_images(shipped) if arguments.settings is None else load(arguments.settings), arguments.recipe)
+    settings = for_recipe(
+        for_images(shipped) if arguments.settings is None else load(arguments.settings), arguments.recipe
+    )
     if arguments.model is None:
         return settings
-    return settings.model_copy(update={"model": settings.model.model_copy(update={"path": arguments.model, "reference_path": None})})
+    return settings.model_copy(
+        update={"model": settings.model.model_copy(update={"path": arguments.model, "reference_path": None})}
+    )

@@ -24,7 +24,9 @@ class Change:
 class Released:
     """Recipes are always loaded by the settings in use, so that one configuration names recipe and camera together."""
 
-    def __init__(self, settings: Settings, again: Callable[[], Settings], make_camera: Callable[[AnyCamera], Camera]) -> None:
+    def __init__(
+        self, settings: Settings, again: Callable[[], Settings], make_camera: Callable[[AnyCamera], Camera]
+    ) -> None:
         """`again` reads the file. Raises WeldgateError."""
         self._settings, self._again, self._make_camera = settings, again, make_camera
 
@@ -52,7 +54,9 @@ class Released:
         known = {1, *self._settings.recipes}
         for other in sorted({1, *new.recipes} - {number}):
             if other not in known or _judging(new, other) != _judging(self._settings, other):
-                prepare(new, other)  # or the station would not start next time, or refuse the recipe when the PLC wants it
+                prepare(
+                    new, other
+                )  # or the station would not start next time, or refuse the recipe when the PLC wants it
         loaded = prepare(new, number)
         if new.camera != self._settings.camera:
             camera = self._make_camera(new.camera)

@@ -29,7 +29,9 @@ TOO_MANY = "too many changes of settings wait: try again"
 class OperatorRequests:
     """Owns accounts, settings, acknowledgements and their journal entries; the cycle gets orders alone."""
 
-    def __init__(self, server: RequestServer, path: Path, released: Released, hand_over: Callable[[Order], None]) -> None:
+    def __init__(
+        self, server: RequestServer, path: Path, released: Released, hand_over: Callable[[Order], None]
+    ) -> None:
         """`path`: of the settings file; `hand_over` gives an order to the cycle."""
         self._server, self._stop = server, threading.Event()
         self._status: StatusEvent | None = None

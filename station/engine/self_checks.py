@@ -31,7 +31,9 @@ class Master:
 class Watch:
     """Hears of every part; tells what the PLC must know beside the verdicts."""
 
-    def __init__(self, loaded: Loaded, masters: Mapping[str, Master], due_s: float | None, self_test_s: float) -> None:
+    def __init__(
+        self, loaded: Loaded, masters: Mapping[str, Master], due_s: float | None, self_test_s: float
+    ) -> None:
         """`masters` by serial; `due_s`: a master not judged for so long is due; `self_test_s`: idle time between two self-tests."""
         self._masters, self._due_s, self._self_test_s = dict(masters), due_s, self_test_s
         self._crc = loaded.provenance.config_crc
@@ -48,7 +50,10 @@ class Watch:
         self._tested_s = time.monotonic()
         crc = loaded.provenance.config_crc
         if crc != self._crc:  # what was right by other limits proves nothing; what was wrong stays so
-            self._masters = {s: m if m.found not in (None, m.expected) else Master(m.expected) for s, m in self._masters.items()}
+            self._masters = {
+                s: m if m.found not in (None, m.expected) else Master(m.expected)
+                for s, m in self._masters.items()
+            }
         self._crc = crc
 
     @property
@@ -69,7 +74,9 @@ class Watch:
     @property
     def masters_due(self) -> bool:
         """Whether a master was not judged for too long."""
-        return self._due_s is not None and any(time.time() - m.checked_s > self._due_s for m in self._masters.values())
+        return self._due_s is not None and any(
+            time.time() - m.checked_s > self._due_s for m in self._masters.values()
+        )
 
     def part(self, inspection: Inspection) -> None:
         """A part was judged."""
@@ -78,7 +85,11 @@ class Watch:
             return
         before, self.drift = self.drifting, self._drift_watch.part(np.array(inspection.look))
         if self.drifting and not before:
-            log.warning("the pictures drift (%.2f, limit %.2f); check light, focus and surface", self.drift.value, self.drift.limit)
+            log.warning(
+                "the pictures drift (%.2f, limit %.2f); check light, focus and surface",
+                self.drift.value,
+                self.drift.limit,
+            )
         elif before and not self.drifting:
             log.info("the pictures are as they were (%.2f)", self.drift.value)
 
@@ -92,7 +103,12 @@ class Watch:
         if found is master.expected:
             log.info("golden check: master %s judged %s, right", serial, found)
         else:
-            log.error("golden check: master %s judged %s, must be %s; no verdict counts until it is right", serial, found, master.expected)
+            log.error(
+                "golden check: master %s judged %s, must be %s; no verdict counts until it is right",
+                serial,
+                found,
+                master.expected,
+            )
 
     def idle(self) -> None:
         """No part is there: judge the stored frame if it is time."""
@@ -106,7 +122,9 @@ class Watch:
             failed = True
         self._tested_s = time.monotonic()
         if failed and not self.self_test_failed:
-            log.error("self-test failed: the stored frame is judged differently; restart the station, check the PC's memory")
+            log.error(
+                "self-test failed: the stored frame is judged differently; restart the station, check the PC's memory"
+            )
         elif self.self_test_failed and not failed:
             log.info("self-test passed again")
         self.self_test_failed = failed

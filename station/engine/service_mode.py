@@ -102,7 +102,9 @@ def drained(status: Status) -> bool:
     return not status & (Status.READY | Status.BUSY | Status.RESULT_VALID | Status.TRIGGER_ACK)
 
 
-def look(camera: ReconnectingCamera, inspector: Inspector, wanted: Service) -> tuple[LookEvent, Preview | None]:
+def look(
+    camera: ReconnectingCamera, inspector: Inspector, wanted: Service
+) -> tuple[LookEvent, Preview | None]:
     """One picture with its numbers."""
     camera.adjust(wanted.exposure_us, wanted.gain_db)
     grab = camera.grab()

@@ -59,7 +59,10 @@ def make_cycle(
         released=released or Released(settings, lambda: settings, make_camera),
         watch=Watch(
             loaded,
-            {serial: _master(settings.archive.folder, serial, Verdict(found)) for serial, found in golden.masters.items()},
+            {
+                serial: _master(settings.archive.folder, serial, Verdict(found))
+                for serial, found in golden.masters.items()
+            },
             None if golden.due_h is None else golden.due_h * 3600,
             settings.model.self_test_s,
         ),
@@ -73,7 +76,9 @@ def _master(folder: Path, serial: str, expected: Verdict) -> Master:
     checks = find(folder, Wanted(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=1))
     if not checks:
         return Master(expected)
-    return Master(expected, Verdict(checks[0].verdict), datetime.fromisoformat(checks[0].grabbed_at).timestamp())
+    return Master(
+        expected, Verdict(checks[0].verdict), datetime.fromisoformat(checks[0].grabbed_at).timestamp()
+    )
 
 
 def run_engine(path: Path) -> None:
@@ -100,18 +105,38 @@ def run_engine(path: Path) -> None:
         loaded = tried(lambda: prepare(settings, 1))
         publisher = tried(lambda: stack.enter_context(closing(Publisher(settings.channel))))
         archive = tried(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
-        bus = tried(lambda: stack.enter_context(closing(BusLog(settings.archive.folder, settings.archive.bus_days)))) if archive else None
+        bus = (
+            tried(
+                lambda: stack.enter_context(
+                    closing(BusLog(settings.archive.folder, settings.archive.bus_days))
+                )
+            )
+            if archive
+            else None
+        )
         if archive:
             stack.enter_context(closing(Housekeeping(settings.archive.folder, settings.archive.keep)))
         server = tried(lambda: stack.enter_context(closing(RequestServer(settings.channel))))
-        if problems or loaded is None or publisher is None or archive is None or bus is None or server is None:
+        if (
+            problems
+            or loaded is None
+            or publisher is None
+            or archive is None
+            or bus is None
+            or server is None
+        ):
             raise WeldgateError("; ".join(problems))
         line = make_line(settings.plc, bus)
         stack.callback(line.stop)
         line.start()
         for change in adjustments.words(path):
             log.warning("changed at the station, over %s: %s", path.name, change)
-        log.info("station up: model %s, PLC %s on port %d", loaded.provenance.model_version, settings.plc.mode, line.port)
+        log.info(
+            "station up: model %s, PLC %s on port %d",
+            loaded.provenance.model_version,
+            settings.plc.mode,
+            line.port,
+        )
         alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder)))
         released, orders = Released(settings, lambda: load(path), make_camera), OrderQueue()
         requests = stack.enter_context(closing(OperatorRequests(server, path, released, orders.put)))

@@ -54,7 +54,11 @@ def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
     if image.ndim == 3 and image.shape[2] >= 3 and not _grey(image):
         warnings.append("colour: only its brightness is judged")
     if image.ndim == 3:
-        image = image[:, :, 0] if image.shape[2] < 3 else cv2.cvtColor(np.ascontiguousarray(image[:, :, :3]), cv2.COLOR_BGR2GRAY)
+        image = (
+            image[:, :, 0]
+            if image.shape[2] < 3
+            else cv2.cvtColor(np.ascontiguousarray(image[:, :, :3]), cv2.COLOR_BGR2GRAY)
+        )
     if image.dtype == np.uint16:
         image = np.asarray(image // 256, np.uint8)
     return np.ascontiguousarray(image), tuple(warnings)

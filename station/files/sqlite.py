@@ -38,7 +38,10 @@ def connect_to_read(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=PATIENCE_S)
     until_s = time.monotonic() + PATIENCE_S
     try:
-        while connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None and time.monotonic() < until_s:
+        while (
+            connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None
+            and time.monotonic() < until_s
+        ):
             time.sleep(0.01)
     except BaseException:
         connection.close()

@@ -24,7 +24,12 @@ class Inspector:
     """Judges frames with one model and one set of limits; the same for line and replay."""
 
     def __init__(
-        self, ring_network: RingNetwork, classifier: Classifier, weld: WeldSettings, quality: QualitySettings, model: ModelSettings
+        self,
+        ring_network: RingNetwork,
+        classifier: Classifier,
+        weld: WeldSettings,
+        quality: QualitySettings,
+        model: ModelSettings,
     ) -> None:
         """Raises ModelError if the settings name a reference that does not fit, SettingsError if a limit is of no kind the model knows."""
         self._ring_network = ring_network

@@ -29,7 +29,12 @@ def prepare(settings: Settings, number: int) -> Loaded:
     inspector, provenance = load_inspector(chosen)
     provenance = replace(provenance, recipe=number)
     path = chosen.model.self_test_path
-    return Loaded(number, inspector, provenance, None if path is None else SelfTest(inspector, path, str(chosen.model.self_test_verdict)))
+    return Loaded(
+        number,
+        inspector,
+        provenance,
+        None if path is None else SelfTest(inspector, path, str(chosen.model.self_test_verdict)),
+    )
 
 
 def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
@@ -50,7 +55,9 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         ring_model_hash=ring_network.file_hash,
         config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
         thresholds=inspector.thresholds,
-        limits_hash=hashlib.sha256(settings.model_dump_json(include={"weld", "quality"}).encode()).hexdigest(),
+        limits_hash=hashlib.sha256(
+            settings.model_dump_json(include={"weld", "quality"}).encode()
+        ).hexdigest(),
     )
     return inspector, provenance
 

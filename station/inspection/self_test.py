@@ -16,8 +16,14 @@ class SelfTest:
         self._inspector, self._image = inspector, read_image(path)
         self._expected = inspector.inspect(self._image)
         if self._expected.verdict != verdict:
-            found = f"{self._expected.verdict}, {self._expected.reason}" if self._expected.reason else str(self._expected.verdict)
-            raise ModelError(f"{path}: the self-test frame is judged {found}, must be {verdict}; check networks, limits and this PC")
+            found = (
+                f"{self._expected.verdict}, {self._expected.reason}"
+                if self._expected.reason
+                else str(self._expected.verdict)
+            )
+            raise ModelError(
+                f"{path}: the self-test frame is judged {found}, must be {verdict}; check networks, limits and this PC"
+            )
 
     def passes(self) -> bool:
         """Whether the same is found again, to the bit."""

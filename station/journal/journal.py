@@ -53,15 +53,36 @@ class Entry:
 
 
 def entries(
-    folder: Path, kinds: Collection[Kind] = (), subject: str | None = None, newest_first: bool = True, limit: int | None = None
+    folder: Path,
+    kinds: Collection[Kind] = (),
+    subject: str | None = None,
+    newest_first: bool = True,
+    limit: int | None = None,
 ) -> list[Entry]:
     """Entries of some kinds, or of all. None if there is no journal yet. Raises RecordError."""
-    where = [f"kind IN ({', '.join('?' * len(kinds))})"] * bool(kinds) + ["subject = ?"] * (subject is not None)
+    where = [f"kind IN ({', '.join('?' * len(kinds))})"] * bool(kinds) + ["subject = ?"] * (
+        subject is not None
+    )
     values = [*map(str, kinds), *([] if subject is None else [subject])]
-    query = f"SELECT number, {', '.join(COLUMNS)} FROM entries" + (f" WHERE {' AND '.join(where)}" if where else "")
-    query += f" ORDER BY number {'DESC' if newest_first else 'ASC'}" + ("" if limit is None else f" LIMIT {int(limit)}")
+    query = f"SELECT number, {', '.join(COLUMNS)} FROM entries" + (
+        f" WHERE {' AND '.join(where)}" if where else ""
+    )
+    query += f" ORDER BY number {'DESC' if newest_first else 'ASC'}" + (
+        "" if limit is None else f" LIMIT {int(limit)}"
+    )
     return [
-        Entry(*(row["at"], Kind(row["kind"]), row["who"], row["subject"], row["before"], row["after"], row["reason"]), int(row["number"]))
+        Entry(
+            *(
+                row["at"],
+                Kind(row["kind"]),
+                row["who"],
+                row["subject"],
+                row["before"],
+                row["after"],
+                row["reason"],
+            ),
+            int(row["number"]),
+        )
         for row in _rows(folder, query, values)
     ]
 

@@ -22,9 +22,13 @@ SCHEMA = (
 """Statements that make the journal."""
 
 
-def append(folder: Path, kind: Kind, who: str, subject: str = "", before: str = "", after: str = "", reason: str = "") -> Entry:
+def append(
+    folder: Path, kind: Kind, who: str, subject: str = "", before: str = "", after: str = "", reason: str = ""
+) -> Entry:
     """Write an entry durably. Raises RecordError; then what it tells of must not be done."""
-    entry = Entry(datetime.now(UTC).isoformat(timespec="milliseconds"), kind, who, subject, before, after, reason)
+    entry = Entry(
+        datetime.now(UTC).isoformat(timespec="milliseconds"), kind, who, subject, before, after, reason
+    )
     try:
         with closing(sqlite3.connect(folder / NAME, timeout=PATIENCE_S, isolation_level=None)) as connection:
             use_wal(connection)
@@ -35,7 +39,9 @@ def append(folder: Path, kind: Kind, who: str, subject: str = "", before: str = 
             values = [str(getattr(entry, name)) for name in COLUMNS]
             chain = link_entry(CHAIN_START if last is None else last[0], values)
             marks = ", ".join("?" * (len(COLUMNS) + 1))
-            connection.execute(f"INSERT INTO entries ({', '.join(COLUMNS)}, chain) VALUES ({marks})", [*values, chain])
+            connection.execute(
+                f"INSERT INTO entries ({', '.join(COLUMNS)}, chain) VALUES ({marks})", [*values, chain]
+            )
             connection.execute("COMMIT")
     except sqlite3.Error as error:
         raise RecordError(f"{folder / NAME}: cannot be written ({error}); nothing was changed") from None

@@ -31,4 +31,12 @@ def give(
     if not may_second and before is not None and set(before.opinions) - {who}:
         raise LoginError("the second review needs the level quality")
     where = ", ".join(f"{number} {kind}" for number, kind in sorted((marks or {}).items()))
-    append(folder, Kind.REVIEW, who, str(inspection_id), verdict, f"{opinion}: {where}" if where else opinion, comment)
+    append(
+        folder,
+        Kind.REVIEW,
+        who,
+        str(inspection_id),
+        verdict,
+        f"{opinion}: {where}" if where else opinion,
+        comment,
+    )

@@ -59,12 +59,18 @@ class Review:
         if self.agreed is not Opinion.MISSED:
             return {}
         first, *others = (self.marks.get(who, {}) for who in self.opinions)
-        return {number: kind for number, kind in first.items() if all(other.get(number) is kind for other in others)}
+        return {
+            number: kind
+            for number, kind in first.items()
+            if all(other.get(number) is kind for other in others)
+        }
 
 
 def possible(verdict: str) -> tuple[Opinion, ...]:
     """Opinions that one can have of a verdict; none of a part that was not judged."""
-    return {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}.get(verdict, ())
+    return {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}.get(
+        verdict, ()
+    )
 
 
 def reviews(folder: Path) -> dict[int, Review]:

@@ -28,7 +28,9 @@ def open_window(path: Path) -> Window:
 
 def run_panel(path: Path) -> int:
     """Show the window until it is closed, or until SIGINT or SIGTERM. Raises WeldgateError."""
-    if sys.platform == "linux" and not any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")):
+    if sys.platform == "linux" and not any(
+        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
+    ):
         raise WeldgateError("no display for the window; set DISPLAY, or run 'weldgate engine' alone")
     app = QApplication.instance() or QApplication(sys.argv[:1])
     window = open_window(path)

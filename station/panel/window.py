@@ -175,7 +175,9 @@ class Window(QMainWindow):
         session, status = self.session, self.session.received.status
         self._badge.setVisible(status is not None and status.origin is not Origin.CAMERA)
         simulated = status is not None and status.origin is Origin.SIMULATED
-        self._badge.setText(translate("window", "SIMULATED CAMERA") if simulated else translate("window", "REPLAY"))
+        self._badge.setText(
+            translate("window", "SIMULATED CAMERA") if simulated else translate("window", "REPLAY")
+        )
         active = status.alarms if status is not None and session.received.engine_there else ()
         if not session.received.engine_there:
             text = translate("window", "no connection to the engine; the window reconnects automatically")

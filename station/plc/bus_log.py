@@ -17,7 +17,10 @@ from station.plc.map.registers import Control, Offline, Status, Value, VerdictCo
 log = logging.getLogger("weldgate.bus")
 
 NAME = "bus-{:%Y-%m-%d}.jsonl"
-WORDS = {"command": ("TRIGGER_ID", "COMMAND", "ARG"), "status": ("ACK_TRIGGER_ID", "RESULT_TRIGGER_ID", "VERDICT", "CMD_ECHO")}
+WORDS = {
+    "command": ("TRIGGER_ID", "COMMAND", "ARG"),
+    "status": ("ACK_TRIGGER_ID", "RESULT_TRIGGER_ID", "VERDICT", "CMD_ECHO"),
+}
 TAIL_BYTES = 160
 """About the length of a line."""
 MAX_WAITING = 10_000
@@ -82,7 +85,11 @@ def _plc_note(bit: Control, on: bool, said: Status) -> str:
 
 def _station_note(flag: Status, on: bool, rising: Control, after: Values) -> str:
     if flag is Status.MISSED_TRIGGER and on:
-        return "rule broken: TRIGGER_ID 0 or repeated" if after["ERROR_CODE"] == ERROR_BAD_TRIGGER_ID else "TRIGGER not taken"
+        return (
+            "rule broken: TRIGGER_ID 0 or repeated"
+            if after["ERROR_CODE"] == ERROR_BAD_TRIGGER_ID
+            else "TRIGGER not taken"
+        )
     if flag is Status.MAINTENANCE and on:
         stuck = after["ERROR_CODE"] == ERROR_STUCK_BIT
         return "rule broken: TRIGGER or RESULT_ACK held too long" if stuck else "the station's disk fills"
@@ -104,7 +111,9 @@ class BusLog:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise RecordError(f"{folder}: the bus cannot be recorded there ({error.strerror}); set archive.folder") from None
+            raise RecordError(
+                f"{folder}: the bus cannot be recorded there ({error.strerror}); set archive.folder"
+            ) from None
         self._last: tuple[Values, Values] | None = None
         self._queue: queue.Queue[Edge | None] = queue.Queue(MAX_WAITING)
         self._left_out = 0
@@ -141,7 +150,12 @@ class BusLog:
                     self._write(waiting)
             except OSError as error:
                 self._left_out += len(waiting)
-                log.error("%s: %d edges of the bus could not be written (%s)", self._folder, len(waiting), error.strerror)
+                log.error(
+                    "%s: %d edges of the bus could not be written (%s)",
+                    self._folder,
+                    len(waiting),
+                    error.strerror,
+                )
 
     def _write(self, waiting: list[Edge]) -> None:
         day = waiting[-1].time[:10]
@@ -184,10 +198,14 @@ def read_bus(folder: Path) -> Iterator[Edge]:
     """All recorded edges in order. Raises RecordError if there are none, or a line cannot be read."""
     files = sorted(folder.glob("bus-????-??-??.jsonl"))
     if not files:
-        raise RecordError(f"{folder}: no record of the bus here; name an archive folder of an engine that ran")
+        raise RecordError(
+            f"{folder}: no record of the bus here; name an archive folder of an engine that ran"
+        )
     for path in files:
         for count, line in enumerate(path.read_text().splitlines(), start=1):
             try:
                 yield Edge(**json.loads(line))
             except (ValueError, TypeError):
-                raise RecordError(f"{path}: line {count} cannot be read; the file was cut off or changed") from None
+                raise RecordError(
+                    f"{path}: line {count} cannot be read; the file was cut off or changed"
+                ) from None

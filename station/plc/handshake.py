@@ -71,7 +71,9 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
 def ready(s: State) -> bool:
     """Whether a trigger would be accepted now."""
     waiting = not (s.control & Control.RESULT_ACK) or s.stuck
-    return s.offline is Offline.NONE and s.phase in (Phase.IDLE, Phase.SHOWN) and waiting and not s.trigger_ack
+    return (
+        s.offline is Offline.NONE and s.phase in (Phase.IDLE, Phase.SHOWN) and waiting and not s.trigger_ack
+    )
 
 
 def _clocks(s: State, inputs: Inputs, now_s: float, times: Times) -> State:
@@ -205,7 +207,9 @@ def _triggered(s: State, inputs: Inputs, now_s: float, was_ready: bool) -> State
     golden = bool(inputs.control & Control.GOLDEN_CHECK)
     trigger = Trigger(inputs.trigger_id, inputs.serial, now_s, s.accepted + 1, golden=golden)
     s = replace(_wiped(s), accepted=trigger.number)
-    return replace(s, phase=Phase.WIPED, trigger=trigger, last_id=inputs.trigger_id, exposure_done=False, missed=False)
+    return replace(
+        s, phase=Phase.WIPED, trigger=trigger, last_id=inputs.trigger_id, exposure_done=False, missed=False
+    )
 
 
 def _error_result(trigger: Trigger, reason: int, code: int) -> Result:

@@ -200,10 +200,19 @@ class ModbusLine:
         except LineError as error:
             link = False
             self._link_lost(error, now_s)
-        if self._lost_s is not None and not link and now_s - self._lost_s < min(self._times.plc_heartbeat_s or GRACE_S, GRACE_S):
+        if (
+            self._lost_s is not None
+            and not link
+            and now_s - self._lost_s < min(self._times.plc_heartbeat_s or GRACE_S, GRACE_S)
+        ):
             return False
         offered, self._offered = self._offered, None  # taken once: the cycle may offer the next at any moment
-        outcome = step(self._state, self._inputs(now_s, link, None if offered is None else offered[0]), now_s, self._times)
+        outcome = step(
+            self._state,
+            self._inputs(now_s, link, None if offered is None else offered[0]),
+            now_s,
+            self._times,
+        )
         self._count(outcome.state)
         self._state = outcome.state
         self._plan(outcome, offered)
@@ -247,7 +256,9 @@ class ModbusLine:
     def _plan(self, outcome: Step, offered: "Offer | None") -> None:
         if offered is not None:
             result, answer = offered
-            self._after.append(lambda: answer.set_result(not outcome.refused and self._state.result is result))
+            self._after.append(
+                lambda: answer.set_result(not outcome.refused and self._state.result is result)
+            )
         if outcome.start is not None:
             start = outcome.start
             self._after.append(lambda: self._requests.put(start))

@@ -40,14 +40,18 @@ class Comparison:
         answer = [f"compared with the line: {self.compared} parts, {len(self.flips)} verdicts flip"]
         for before, now in (("NOK", "OK"), ("OK", "NOK")):
             flipped = [flip for flip in self.flips if (flip.before, flip.now) == (before, now)]
-            answer.append(f"  {before} to {now}: {len(flipped)}" + ("" if before == "OK" else ", would be released"))
+            answer.append(
+                f"  {before} to {now}: {len(flipped)}" + ("" if before == "OK" else ", would be released")
+            )
             scores = [(flip.name, _score(flip.worst_before), _score(flip.worst_now)) for flip in flipped]
             answer += [f"    {name}: worst score {worst} to {now_worst}" for name, worst, now_worst in scores]
         others = [flip for flip in self.flips if Verdict.ERROR in (flip.before, flip.now)]
         answer += [f"  {flip.name}: {flip.before} to {flip.now}" for flip in others]
         if self.same_judge:
             alike = self.same_judge - len(self.not_alike)
-            answer.append(f"same networks, limits and settings: {self.same_judge}, of which {alike} agree to the bit")
+            answer.append(
+                f"same networks, limits and settings: {self.same_judge}, of which {alike} agree to the bit"
+            )
         return answer
 
 

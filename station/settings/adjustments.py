@@ -28,9 +28,13 @@ def read(settings: Path) -> dict[str, Any]:
     except FileNotFoundError:
         return {}
     except (OSError, ValueError) as error:
-        raise SettingsError(f"{path}: cannot be read ({error}); restore it, or remove it to go back to the settings file") from None
+        raise SettingsError(
+            f"{path}: cannot be read ({error}); restore it, or remove it to go back to the settings file"
+        ) from None
     if not _is_ours(found):
-        raise SettingsError(f"{path}: is not what the station writes; remove it to go back to the settings file")
+        raise SettingsError(
+            f"{path}: is not what the station writes; remove it to go back to the settings file"
+        )
     return with_new_names(found)
 
 
@@ -40,7 +44,11 @@ def _is_ours(found: object) -> TypeGuard[dict[str, Any]]:
     recipes = found.get("recipes", {})
     if not isinstance(found.get("camera", {}), dict) or not isinstance(recipes, dict):
         return False
-    sections = [section for recipe in recipes.values() for section in (recipe.items() if isinstance(recipe, dict) else [(None, None)])]
+    sections = [
+        section
+        for recipe in recipes.values()
+        for section in (recipe.items() if isinstance(recipe, dict) else [(None, None)])
+    ]
     return all(name in SECTIONS and isinstance(values, dict) for name, values in sections)
 
 
@@ -90,4 +98,6 @@ def put(changes: Mapping[str, Any], place: Sequence[str], value: object) -> dict
     """The same with another value there; None takes it out."""
     name, rest = place[0], place[1:]
     inner = put(changes.get(name, {}), rest, value) if rest else value
-    return {k: v for k, v in changes.items() if k != name} | ({} if inner is None or (inner == {} and rest) else {name: inner})
+    return {k: v for k, v in changes.items() if k != name} | (
+        {} if inner is None or (inner == {} and rest) else {name: inner}
+    )

@@ -23,7 +23,9 @@ def load(path: Path, changes: dict[str, Any] | None = None) -> Settings:
         with path.open("rb") as file:
             raw = tomllib.load(file)
     except FileNotFoundError:
-        raise SettingsError(f"{path}: no such settings file; name one with -c, or copy deploy/station.toml") from None
+        raise SettingsError(
+            f"{path}: no such settings file; name one with -c, or copy deploy/station.toml"
+        ) from None
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: cannot be read: {error}") from None
     except tomllib.TOMLDecodeError as error:
@@ -60,7 +62,9 @@ def _first(error: ValidationError) -> str:
 
 def _under(folder: Path, values: dict[str, Any]) -> dict[str, Path]:
     """Return the paths among a section's values, counted from the folder."""
-    named = {key: value for key, value in values.items() if key in ("path", "folder") or key.endswith("_path")}
+    named = {
+        key: value for key, value in values.items() if key in ("path", "folder") or key.endswith("_path")
+    }
     return {key: folder / value for key, value in named.items() if value is not None}
 
 

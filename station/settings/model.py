@@ -60,7 +60,9 @@ class ModelSettings(Section):
     """Idle time between two self-tests."""
     limits: dict[KindName, LimitSettings] = Field(default_factory=dict)
     """By the name of the kind of defect."""
-    segment_thresholds: dict[Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]] = Field(default_factory=dict)
+    segment_thresholds: dict[
+        Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]
+    ] = Field(default_factory=dict)
     """Thresholds of single segments, for any kind of defect."""
 
     @model_validator(mode="after")
@@ -218,7 +220,9 @@ class Settings(Section):
 def for_images(networks: Path) -> Settings:
     """Settings to judge recorded images by, without a file: the default limits, and the networks in a folder."""
     camera = ReplaySettings(kind="replay", folder=Path())
-    return Settings(camera=camera, model=ModelSettings(path=networks / "weldgate.onnx", ring_path=networks / "ring.onnx"))
+    return Settings(
+        camera=camera, model=ModelSettings(path=networks / "weldgate.onnx", ring_path=networks / "ring.onnx")
+    )
 
 
 def for_recipe(settings: Settings, number: int) -> Settings:
@@ -227,7 +231,9 @@ def for_recipe(settings: Settings, number: int) -> Settings:
     if changes is None:
         if number == 1:
             return settings
-        raise SettingsError(f"there is no recipe {number}; recipes: {', '.join(map(str, sorted({1, *settings.recipes})))}")
+        raise SettingsError(
+            f"there is no recipe {number}; recipes: {', '.join(map(str, sorted({1, *settings.recipes})))}"
+        )
     sections: dict[str, Section] = {}
     for name, section in (("weld", settings.weld), ("quality", settings.quality), ("model", settings.model)):
         sections[name] = type(section).model_validate(merged(section.model_dump(), getattr(changes, name)))

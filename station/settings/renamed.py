@@ -41,6 +41,8 @@ def _model(section: Mapping[str, Any], place: str) -> dict[str, Any]:
         if not isinstance(limits, Mapping) or not isinstance(limits.get(kind, {}), Mapping):
             return dict(section)  # refused by the checks that follow, which name the place
         if key in limits.get(kind, {}):
-            raise SettingsError(f"{place}.{old} is the old name of {place}.limits.{kind}.{key}; give one of them")
+            raise SettingsError(
+                f"{place}.{old} is the old name of {place}.limits.{kind}.{key}; give one of them"
+            )
         answer["limits"] = {**limits, kind: {**limits.get(kind, {}), key: section[old]}}
     return answer

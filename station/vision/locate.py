@@ -51,7 +51,9 @@ def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring
     height, width = image.shape
     reach = 2 * (expected.radius_px + expected.tolerance_px)
     if width < reach or height < reach:
-        raise LocateError(f"no weld found: {width} x {height} px cannot hold a ring of {expected.radius_px:.0f} px radius")
+        raise LocateError(
+            f"no weld found: {width} x {height} px cannot hold a ring of {expected.radius_px:.0f} px radius"
+        )
     x, y, ridge = _coarse(image, expected)
     if ridge < MIN_COARSE:
         raise LocateError(f"no weld found: the best ring scores {ridge:.2f}, needed {MIN_COARSE}")
@@ -64,9 +66,13 @@ def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring
         support = float(np.mean(on_circle))
         x, y, radius = x + fit[0], y + fit[1], radius + fit[2]
     if support < MIN_SUPPORT:
-        raise LocateError(f"no weld found: only {support:.0%} of the best circle shows weld or joint, needed {MIN_SUPPORT:.0%}")
+        raise LocateError(
+            f"no weld found: only {support:.0%} of the best circle shows weld or joint, needed {MIN_SUPPORT:.0%}"
+        )
     if abs(radius - expected.radius_px) > expected.tolerance_px:
-        raise LocateError(f"no weld found: the best circle has {radius:.0f} px radius, needed {expected.radius_px:.0f} px")
+        raise LocateError(
+            f"no weld found: the best circle has {radius:.0f} px radius, needed {expected.radius_px:.0f} px"
+        )
     ring = Ring(float(x), float(y), float(radius), support, float(np.sqrt(np.mean(residual[on_circle] ** 2))))
     if not in_view(ring, width, height):
         raise LocateError(f"the weld at ({x:.0f}, {y:.0f}) px is not wholly in view", out_of_view=True)
@@ -77,8 +83,12 @@ def _coarse(image: Image, expected: Expected) -> tuple[float, float, float]:
     """Centre x, y in image pixels and the ridge score of the best ring at 1/8 size."""
     half = cv2.resize(image, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     smooth = cv2.blur(half, (9, 9))
-    fine = cv2.resize(cv2.absdiff(half, smooth), None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA).astype(np.float32)
-    level = cv2.resize(smooth, (fine.shape[1], fine.shape[0]), interpolation=cv2.INTER_AREA).astype(np.float32)
+    fine = cv2.resize(cv2.absdiff(half, smooth), None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA).astype(
+        np.float32
+    )
+    level = cv2.resize(smooth, (fine.shape[1], fine.shape[0]), interpolation=cv2.INTER_AREA).astype(
+        np.float32
+    )
     field = np.log1p(fine / (0.02 * level + 0.5))
     best = (0.0, 0.0, -np.inf)
     for radius_px in expected.radius_px + expected.tolerance_px * np.array([-1.0, 0.0, 1.0]):
@@ -90,7 +100,11 @@ def _coarse(image: Image, expected: Expected) -> tuple[float, float, float]:
             continue
         row, column = np.unravel_index(int(inner.argmax()), inner.shape)
         if inner[row, column] > best[2]:
-            best = (float((column + edge + 0.5) * SCALE - 0.5), float((row + edge + 0.5) * SCALE - 0.5), float(inner[row, column]))
+            best = (
+                float((column + edge + 0.5) * SCALE - 0.5),
+                float((row + edge + 0.5) * SCALE - 0.5),
+                float(inner[row, column]),
+            )
     return best
 
 

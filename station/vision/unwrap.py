@@ -25,7 +25,9 @@ def strip_to_frame(ring: Ring, points: Points) -> Points:
     """Strip points (K, 2) as (column, row) to frame points (K, 2) as (x, y)."""
     angle = (points[:, 0] + 0.5) * RAD_PER_COLUMN
     radius = ring.radius_px + MIDDLE_ROW - points[:, 1]
-    return np.stack([ring.center_x_px + radius * np.cos(angle), ring.center_y_px + radius * np.sin(angle)], axis=1)
+    return np.stack(
+        [ring.center_x_px + radius * np.cos(angle), ring.center_y_px + radius * np.sin(angle)], axis=1
+    )
 
 
 def frame_to_strip(ring: Ring, points: Points) -> Points:
@@ -38,7 +40,10 @@ def frame_to_strip(ring: Ring, points: Points) -> Points:
 def in_view(ring: Ring, width_px: int, height_px: int) -> bool:
     """Whether the whole strip lies inside an image of that size."""
     reach = ring.radius_px + STRIP_ROWS / 2
-    return reach <= ring.center_x_px <= width_px - 1 - reach and reach <= ring.center_y_px <= height_px - 1 - reach
+    return (
+        reach <= ring.center_x_px <= width_px - 1 - reach
+        and reach <= ring.center_y_px <= height_px - 1 - reach
+    )
 
 
 def unwrap(image: Image, ring: Ring) -> Image:
@@ -48,7 +53,10 @@ def unwrap(image: Image, ring: Ring) -> Image:
     """
     height, width = image.shape
     if not in_view(ring, width, height):
-        raise LocateError(f"the ring at ({ring.center_x_px:.0f}, {ring.center_y_px:.0f}) px is not wholly in view", out_of_view=True)
+        raise LocateError(
+            f"the ring at ({ring.center_x_px:.0f}, {ring.center_y_px:.0f}) px is not wholly in view",
+            out_of_view=True,
+        )
     angle = (np.arange(STRIP_COLUMNS, dtype=np.float32) + 0.5) * np.float32(RAD_PER_COLUMN)
     radius = np.float32(ring.radius_px + MIDDLE_ROW) - np.arange(STRIP_ROWS, dtype=np.float32)
     x = np.float32(ring.center_x_px) + radius[:, None] * np.cos(angle)

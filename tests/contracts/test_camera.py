@@ -32,7 +32,11 @@ class Fed(PylonCamera):
     """The production camera with a feed that shows the next picture before each grab."""
 
     def __init__(self, feed: Feed, images: list[Image]) -> None:
-        super().__init__(PylonSettings(kind="pylon", device_class="BaslerCamEmu", serial="0815-0000", timeout_ms=400, **SMALL))
+        super().__init__(
+            PylonSettings(
+                kind="pylon", device_class="BaslerCamEmu", serial="0815-0000", timeout_ms=400, **SMALL
+            )
+        )
         self.feed, self.images = feed, images
 
     def grab(self):  # type: ignore[no-untyped-def]
@@ -105,7 +109,10 @@ def test_the_configuration_of_a_camera_is_written_as_ever() -> None:
         '{"kind":"pylon","device_class":"BaslerGigE","serial":"1","trigger":"software","width_px":4200,"height_px":2160,'
         '"exposure_us":2000.0,"gain_db":0.0,"timeout_ms":500,"reconnect_s":1.0}'
     )
-    assert ReplaySettings(kind="replay", folder=Path("a")).model_dump_json() == '{"kind":"replay","folder":"a","reconnect_s":1.0}'
+    assert (
+        ReplaySettings(kind="replay", folder=Path("a")).model_dump_json()
+        == '{"kind":"replay","folder":"a","reconnect_s":1.0}'
+    )
 
 
 def test_each_trigger_gives_the_next_picture_to_the_pixel(make: Make) -> None:
@@ -209,7 +216,14 @@ def test_a_transport_error_is_camera_lost_and_open_mends_it(fed: Fed) -> None:
 def test_no_edge_on_the_line_is_a_timeout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in Feed(tmp_path).environment.items():
         monkeypatch.setenv(name, value)
-    settings = PylonSettings(kind="pylon", device_class="BaslerCamEmu", serial="0815-0000", trigger="line1", timeout_ms=100, **SMALL)
+    settings = PylonSettings(
+        kind="pylon",
+        device_class="BaslerCamEmu",
+        serial="0815-0000",
+        trigger="line1",
+        timeout_ms=100,
+        **SMALL,
+    )
     camera = PylonCamera(settings)
     camera.open()
     with pytest.raises(FrameTimeout, match="100 ms"):

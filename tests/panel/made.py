@@ -43,7 +43,12 @@ def status(
 ) -> StatusEvent:
     """`camera`: why it is not there; `at_s`: now, if not given."""
     bits = Status.ONLINE | Status.READY if offline is Offline.NONE else Status(0)
-    values: dict[str, Value] = {"STATUS": int(bits), "OFFLINE_REASON": int(offline), "TEST_U32": 0x12345678, "TEST_F32": 123.456}
+    values: dict[str, Value] = {
+        "STATUS": int(bits),
+        "OFFLINE_REASON": int(offline),
+        "TEST_U32": 0x12345678,
+        "TEST_F32": 123.456,
+    }
     c = counts or Counts(3, 1, 0)
     values |= {"COUNT_OK": c.ok, "COUNT_NOK": c.nok, "COUNT_ERROR": c.error}
     command_words, status_words = [0] * COMMAND_WORDS, pack_window(STATUS_START, STATUS_WORDS, values)

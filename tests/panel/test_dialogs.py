@@ -15,7 +15,9 @@ from tests.desk import Desk
 from tests.panel.made import log_in
 
 
-def answered(window: Window, typed: Path, over: bool | None, meanwhile: Callable[[], None] = lambda: None) -> Path | None:
+def answered(
+    window: Window, typed: Path, over: bool | None, meanwhile: Callable[[], None] = lambda: None
+) -> Path | None:
     """What comes of a name that is typed; `over`: what is said when asked about a file that exists, None: nothing is asked."""
     asked: list[bool] = []
 
@@ -52,6 +54,8 @@ def test_a_file_has_its_ending_and_goes_over_another_only_if_that_is_said(
     assert answered(window, tmp_path / name, True) == wanted
 
 
-def test_nothing_comes_of_a_dialog_whose_user_is_gone(window: Window, desk: Desk, qtbot: QtBot, tmp_path: Path) -> None:
+def test_nothing_comes_of_a_dialog_whose_user_is_gone(
+    window: Window, desk: Desk, qtbot: QtBot, tmp_path: Path
+) -> None:
     log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)
     assert answered(window, tmp_path / "lot", None, window.session.account.log_out) is None

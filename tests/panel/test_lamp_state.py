@@ -49,7 +49,9 @@ def test_words_symbols_and_colours(event: PartEvent | None, word: str, symbol: s
         (status(Offline.SERVICE, service="Ada", at_s=NOW_S), "SERVICE", "works on the station"),
     ],
 )
-def test_what_is_lost_is_told_apart_and_no_green_covers_it(said: StatusEvent | None, word: str, detail: str) -> None:
+def test_what_is_lost_is_told_apart_and_no_green_covers_it(
+    said: StatusEvent | None, word: str, detail: str
+) -> None:
     shown = lamp(said, None, NOW_S)
     assert (shown.word, shown.detail) == (word, detail)
     assert lamp(said, GOOD, NOW_S).word == word
@@ -73,7 +75,13 @@ def test_no_green_that_the_line_does_not_take() -> None:
     assert (shown.word, shown.more) == ("TEST", "OK")
 
 
-@given(st.floats(0, 1e6), st.floats(0, 1e6), st.sampled_from(list(VerdictCode)), st.sampled_from(list(Offline)), st.floats(0, 2e6))
+@given(
+    st.floats(0, 1e6),
+    st.floats(0, 1e6),
+    st.sampled_from(list(VerdictCode)),
+    st.sampled_from(list(Offline)),
+    st.floats(0, 2e6),
+)
 def test_green_is_a_fresh_ok_that_the_plc_reads(
     status_age_s: float, part_age_s: float, told: VerdictCode, offline: Offline, started_s: float
 ) -> None:

@@ -36,13 +36,33 @@ PURE = (
 )
 
 
-def row(number: int = 1, verdict: str = "NOK", purpose: str = "part", serial: str = "M", at: datetime = NOW) -> Row:
-    return Row(number, serial, 1, at.isoformat(), verdict, None, 0.9, None, "kept", "r.json", "", True, purpose, 1, None)
+def row(
+    number: int = 1, verdict: str = "NOK", purpose: str = "part", serial: str = "M", at: datetime = NOW
+) -> Row:
+    return Row(
+        number,
+        serial,
+        1,
+        at.isoformat(),
+        verdict,
+        None,
+        0.9,
+        None,
+        "kept",
+        "r.json",
+        "",
+        True,
+        purpose,
+        1,
+        None,
+    )
 
 
 def test_what_pages_decide_needs_no_qt() -> None:
     code = f"import sys, importlib\nfor name in {PURE}: importlib.import_module(name)\nassert 'PySide6' not in sys.modules\n"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -95,7 +115,9 @@ def test_each_request_is_answered_once_by_the_engine_or_given_up(steps: list[str
     waiting: list[int] = []
     for step in steps:
         if step == "ask":
-            number = pending.begin(lambda answer: came.__setitem__(answer.request_id, came.get(answer.request_id, 0) + 1), now)
+            number = pending.begin(
+                lambda answer: came.__setitem__(answer.request_id, came.get(answer.request_id, 0) + 1), now
+            )
             waiting.append(number)
         elif step == "answer" and waiting:
             answer = Answer(waiting.pop(0))
@@ -138,11 +160,15 @@ def test_a_search_asks_the_archive_for_what_the_fields_say() -> None:
     assert (between.since, between.until) == (NOW - timedelta(days=2), NOW - timedelta(days=1))
 
 
-OPINIONS = st.dictionaries(st.sampled_from(["Ada", "Bob", "Cy"]), st.sampled_from([Opinion.RIGHT, Opinion.FALSE_CALL]))
+OPINIONS = st.dictionaries(
+    st.sampled_from(["Ada", "Bob", "Cy"]), st.sampled_from([Opinion.RIGHT, Opinion.FALSE_CALL])
+)
 
 
 @given(OPINIONS, st.sampled_from(["OK", "NOK", "ERROR"]), st.sampled_from(["part", "golden", "test"]))
-def test_every_part_has_one_state_and_only_nok_parts_wait_to_be_confirmed(opinions: dict[str, Opinion], verdict: str, purpose: str) -> None:
+def test_every_part_has_one_state_and_only_nok_parts_wait_to_be_confirmed(
+    opinions: dict[str, Opinion], verdict: str, purpose: str
+) -> None:
     review, found = Review(opinions), row(verdict=verdict, purpose=purpose)
     assert [Search(state=str(state)).fits(found, review) for state in State].count(True) == 1
     assert Search().fits(found, review)
@@ -165,7 +191,9 @@ def test_every_part_has_one_state_and_only_nok_parts_wait_to_be_confirmed(opinio
         ("ERROR", 1, None, MasterState.WRONG),
     ],
 )
-def test_how_a_master_stands(verdict: str | None, age_h: float, due_h: float | None, state: MasterState) -> None:
+def test_how_a_master_stands(
+    verdict: str | None, age_h: float, due_h: float | None, state: MasterState
+) -> None:
     at = NOW - timedelta(hours=age_h)
     older = row(1, "ERROR", "golden", at=at - timedelta(hours=1))
     checks = [] if verdict is None else [row(2, verdict, "golden", at=at), older]
@@ -179,7 +207,9 @@ def test_how_a_master_stands(verdict: str | None, age_h: float, due_h: float | N
 
 USED = Values(1, {"limits.hole.threshold": 0.4612345678, "min_sharpness": 0.01})
 LIMITS = st.builds(
-    Values, st.just(1), st.fixed_dictionaries({"limits.hole.threshold": st.floats(0.01, 0.99), "min_sharpness": st.just(0.01)})
+    Values,
+    st.just(1),
+    st.fixed_dictionaries({"limits.hole.threshold": st.floats(0.01, 0.99), "min_sharpness": st.just(0.01)}),
 )
 
 
@@ -207,7 +237,8 @@ def test_what_the_fields_round_is_no_change() -> None:
 
 
 @pytest.mark.parametrize(
-    ("age_s", "shown"), [(1, "S1 · 1 s"), (119, "S1 · 119 s"), (121, "S1 · 2 min"), (8000, "S1 · 2 h"), (2e5, "S1 · 2 d")]
+    ("age_s", "shown"),
+    [(1, "S1 · 1 s"), (119, "S1 · 119 s"), (121, "S1 · 2 min"), (8000, "S1 · 2 h"), (2e5, "S1 · 2 d")],
 )
 def test_the_foot_of_the_lamp_says_how_old_it_is(age_s: float, shown: str) -> None:
     assert foot(part(ok_inspection(), at_s=100.0), 100.0 + age_s) == shown

@@ -68,7 +68,11 @@ def station(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[tuple[Pa
     path.write_text(station_toml(tmp_path / "records", *ports) + getattr(request, "param", ""))
     with (
         (tmp_path / "engine.log").open("w") as log,
-        running([sys.executable, "-m", "station", "engine", "-c", str(path)], {**os.environ, **feed.environment}, log),
+        running(
+            [sys.executable, "-m", "station", "engine", "-c", str(path)],
+            {**os.environ, **feed.environment},
+            log,
+        ),
     ):
         yield path, Line(feed, ports[0])
 
@@ -153,11 +157,18 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     qtbot.keyClicks(recipe.reason, "trial of the least length")
     crc = session.received.status.config_crc if session.received.status else 0
     qtbot.mouseClick(recipe.save, LEFT)
-    qtbot.waitUntil(lambda: session.received.status is not None and session.received.status.config_crc != crc, timeout=20_000)
+    qtbot.waitUntil(
+        lambda: session.received.status is not None and session.received.status.config_crc != crc,
+        timeout=20_000,
+    )
     qtbot.waitUntil(lambda: recipe.said.text() == "saved and in use", timeout=5000)
     assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"min_mm": 1.5}}}}}}
     (change,) = entries(folder, (Kind.SETTING,))
-    assert (change.who, change.subject, change.after) == ("Quentin", "recipes.1.model.limits.hole.min_mm", "1.5")
+    assert (change.who, change.subject, change.after) == (
+        "Quentin",
+        "recipes.1.model.limits.hole.min_mm",
+        "1.5",
+    )
     assert change.reason == "trial of the least length"
     again = line.passes(qtbot, 4)
     assert sum(a.verdict is VerdictCode.OK for a in again) == len(ok) + len(released), "as what if had said"
@@ -167,10 +178,14 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     qtbot.mouseClick(setup.login.log_out, LEFT)
     assert session.account.user is None
     assert not recipe.save.isEnabled()
-    qtbot.waitUntil(lambda: next(e.kind for e in entries(folder, (Kind.LOGIN, Kind.LOGOUT))) is Kind.LOGOUT, timeout=5000)
+    qtbot.waitUntil(
+        lambda: next(e.kind for e in entries(folder, (Kind.LOGIN, Kind.LOGOUT))) is Kind.LOGOUT, timeout=5000
+    )
 
 
-def test_limits_that_the_station_refuses_are_taken_back(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
+def test_limits_that_the_station_refuses_are_taken_back(
+    station: tuple[Path, Line], window: Window, qtbot: QtBot
+) -> None:
     """Its stored frame would be too blurred for them: the station would not come up again."""
     path, line = station
     line.passes(qtbot, 1)
@@ -194,7 +209,9 @@ def test_limits_that_the_station_refuses_are_taken_back(station: tuple[Path, Lin
     assert Alarm.SETTINGS_REFUSED not in status.alarms, "the settings file is as good as before"
 
 
-def test_a_record_whose_picture_is_gone_is_shown_as_such(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
+def test_a_record_whose_picture_is_gone_is_shown_as_such(
+    station: tuple[Path, Line], window: Window, qtbot: QtBot
+) -> None:
     _, line = station
     line.passes(qtbot, 1)
     next(window.session.received.folder.glob("????-??-??/*.png")).unlink()
@@ -226,15 +243,22 @@ def test_five_wrong_pins_are_said_and_a_level_holds(window: Window, qtbot: QtBot
     assert setup.people.save.isEnabled()
 
 
-def test_service_mode_from_the_line_page_is_told_to_the_plc_and_ends_with_the_login(window: Window, qtbot: QtBot) -> None:
+def test_service_mode_from_the_line_page_is_told_to_the_plc_and_ends_with_the_login(
+    window: Window, qtbot: QtBot
+) -> None:
     session = window.session
     log_in(window, qtbot, "Ada", "1234")
     window.go(PageKey.LINE)
     page = window.page
     qtbot.mouseClick(page.service, LEFT)  # type: ignore[attr-defined]
-    qtbot.waitUntil(lambda: session.received.status is not None and session.received.status.service == "Ada", timeout=10_000)
+    qtbot.waitUntil(
+        lambda: session.received.status is not None and session.received.status.service == "Ada",
+        timeout=10_000,
+    )
     session.account.log_out()
-    qtbot.waitUntil(lambda: session.received.status is not None and not session.received.status.service, timeout=10_000)
+    qtbot.waitUntil(
+        lambda: session.received.status is not None and not session.received.status.service, timeout=10_000
+    )
 
 
 @pytest.mark.parametrize("station", ["[panel]\nlogout_min = 0.1\n"], indirect=True)
@@ -247,7 +271,9 @@ def test_nobody_stays_logged_in_for_ever(window: Window, qtbot: QtBot) -> None:
     qtbot.waitUntil(lambda: [e.reason for e in entries(folder, (Kind.LOGOUT,))] == ["idle"], timeout=5000)
 
 
-def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(station: tuple[Path, Line], window: Window, qtbot: QtBot) -> None:
+def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(
+    station: tuple[Path, Line], window: Window, qtbot: QtBot
+) -> None:
     _, line = station
     line.passes(qtbot, 4)
     live = window.page
@@ -263,12 +289,18 @@ def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(station: tuple[Pa
     assert history.film.chosen() == window.session.received.last_nok.part.record.inspection_id
     overlay = live._nok_strip._map
     assert overlay is not None
-    seen = [overlay.pixelColor(x, y).alpha() for x in range(0, overlay.width(), 8) for y in range(0, overlay.height(), 4)]
+    seen = [
+        overlay.pixelColor(x, y).alpha()
+        for x in range(0, overlay.width(), 8)
+        for y in range(0, overlay.height(), 4)
+    ]
     assert max(seen) > 100
     assert sum(a > 100 for a in seen) < len(seen) / 2
 
 
-def test_recorded_parts_are_judged_again_in_the_window(station: tuple[Path, Line], window: Window, qtbot: QtBot, tmp_path: Path) -> None:
+def test_recorded_parts_are_judged_again_in_the_window(
+    station: tuple[Path, Line], window: Window, qtbot: QtBot, tmp_path: Path
+) -> None:
     _, line = station
     answers = line.passes(qtbot, 4)
     log_in(window, qtbot, "Ada", "1234")

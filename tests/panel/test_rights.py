@@ -115,7 +115,9 @@ def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
     assert window.session.account.user is not None, "the engine may come back"
 
 
-def test_the_bit_set_by_hand_stays_in_sight_in_another_language(window: Window, desk: Desk, qtbot: QtBot) -> None:
+def test_the_bit_set_by_hand_stays_in_sight_in_another_language(
+    window: Window, desk: Desk, qtbot: QtBot
+) -> None:
     log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
     window.go(PageKey.LINE)
     hold(window.session, qtbot, HoldService(bit=int(Status.BUSY)))
@@ -144,7 +146,13 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
     session.received.read_settings()
     loaded, archive = prepare(session.received.settings, 1), Archive(session.received.settings.archive)
     frame = Frame(frames[label_with("OK")["frame"]], datetime.now(UTC), "cam", Origin.SIMULATED)
-    archive.commit(archive.begin(frame), ok_inspection(), Part("A", 1, Origin.SIMULATED), loaded.provenance, frame.grabbed_at)
+    archive.commit(
+        archive.begin(frame),
+        ok_inspection(),
+        Part("A", 1, Origin.SIMULATED),
+        loaded.provenance,
+        frame.grabbed_at,
+    )
     archive.close()
     log_in(session, desk, qtbot, "Quentin", Level.QUALITY)
     page = recipe_page(window)
@@ -172,7 +180,9 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
     assert not page.save.isEnabled(), "it was another one who asked"
 
 
-def test_a_change_is_waited_for_until_the_station_uses_it_or_says_why_not(window: Window, desk: Desk, path: Path, qtbot: QtBot) -> None:
+def test_a_change_is_waited_for_until_the_station_uses_it_or_says_why_not(
+    window: Window, desk: Desk, path: Path, qtbot: QtBot
+) -> None:
     session, heard = window.session, list[str]()
     session.change.used.connect(lambda: heard.append("used"))
     session.change.refused.connect(heard.append)
@@ -250,11 +260,19 @@ def test_an_alarm_of_the_run_before_is_over_when_it_is_not_there_any_more(tmp_pa
     second = AlarmLog(tmp_path)
     second.lasting({int(Alarm.PLC_SILENT)})
     second.close()
-    kinds = [(e.kind, int(e.subject[3:], 16)) for e in entries(tmp_path, (Kind.ALARM, Kind.ALARM_OVER), newest_first=False)]
-    assert kinds == [*((Kind.ALARM, code) for code in sorted(both)), (Kind.ALARM_OVER, int(Alarm.CAMERA_LOST))]
+    kinds = [
+        (e.kind, int(e.subject[3:], 16))
+        for e in entries(tmp_path, (Kind.ALARM, Kind.ALARM_OVER), newest_first=False)
+    ]
+    assert kinds == [
+        *((Kind.ALARM, code) for code in sorted(both)),
+        (Kind.ALARM_OVER, int(Alarm.CAMERA_LOST)),
+    ]
 
 
-def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(window: Window, frames: dict[str, Image]) -> None:
+def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(
+    window: Window, frames: dict[str, Image]
+) -> None:
     session = window.session
     session.received._on_parts([part(nok_inspection(), 0)])
     session.received._on_preview(make_preview(0, frames[label_with("OK")["frame"]], None))
@@ -263,7 +281,9 @@ def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(window: Wind
     assert not session.received.thumbs
 
 
-def test_an_unreadable_journal_is_told_and_stops_no_engine(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_an_unreadable_journal_is_told_and_stops_no_engine(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     (tmp_path / "journal.sqlite").write_bytes(b"not a database, " * 100)
     log = AlarmLog(tmp_path)
     log.lasting({int(Alarm.PLC_SILENT)})

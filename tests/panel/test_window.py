@@ -39,7 +39,9 @@ def live(window: Window) -> LivePage:
     return page
 
 
-def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: QtBot, frames: dict[str, Image]) -> None:
+def test_events_reach_the_window(
+    window: Window, publisher: Publisher, qtbot: QtBot, frames: dict[str, Image]
+) -> None:
     item = label_with("hole")
     ring = Ring(item["center"][0], item["center"][1], item["radius"], 1.0)
     event, preview = part(nok_inspection(), 12), make_preview(12, frames[item["frame"]], ring)
@@ -63,11 +65,17 @@ def test_events_reach_the_window(window: Window, publisher: Publisher, qtbot: Qt
     assert window._buttons[PageKey.ALARMS].text() == "Alarms (1)"
     assert live(window).clock.counts[3] >= 1
     picture = window.grab().toImage()
-    colors = {picture.pixelColor(x, y).name() for x in range(0, picture.width(), 4) for y in range(0, picture.height(), 4)}
+    colors = {
+        picture.pixelColor(x, y).name()
+        for x in range(0, picture.width(), 4)
+        for y in range(0, picture.height(), 4)
+    }
     assert theme.DARK.bad in colors, "the NOK red is nowhere on the window"
 
 
-def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(window: Window, frames: dict[str, Image], qtbot: QtBot) -> None:
+def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(
+    window: Window, frames: dict[str, Image], qtbot: QtBot
+) -> None:
     session = window.session
     item = label_with("OK")
     session.received._on_parts([part(ok_inspection(), 1)])
@@ -77,7 +85,9 @@ def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(windo
     assert "no picture of this part" in live(window).weld._note
 
 
-def test_the_button_asks_the_engine_for_a_test_picture(window: Window, publisher: Publisher, desk: Desk, qtbot: QtBot) -> None:
+def test_the_button_asks_the_engine_for_a_test_picture(
+    window: Window, publisher: Publisher, desk: Desk, qtbot: QtBot
+) -> None:
     assert not live(window).test.isEnabled(), "nobody is logged in, no engine was heard yet"
     log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)
     assert not live(window).test.isEnabled(), "no engine was heard yet"
@@ -103,7 +113,9 @@ def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> No
     assert "no connection to the engine" in window._alarm.text()
 
 
-def test_a_restarted_engine_needs_no_new_panel(window: Window, settings: ChannelSettings, qtbot: QtBot) -> None:
+def test_a_restarted_engine_needs_no_new_panel(
+    window: Window, settings: ChannelSettings, qtbot: QtBot
+) -> None:
     for _ in range(2):
         end = Publisher(settings)
 
@@ -134,7 +146,9 @@ def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Wind
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1920, 1080)])
-def test_every_page_fits_the_screen_in_both_languages(window: Window, size: tuple[int, int], qtbot: QtBot) -> None:
+def test_every_page_fits_the_screen_in_both_languages(
+    window: Window, size: tuple[int, int], qtbot: QtBot
+) -> None:
     window.resize(*size)
     for language in ("en", "de"):
         window.speak(language)

@@ -48,7 +48,16 @@ def test_places_for_values_are_in_the_translation_too() -> None:
 
 
 def test_the_vocabulary_has_every_word_of_the_station() -> None:
-    needed = [*Reason, *Origin, *Purpose, *Kind, *Opinion, *State, *WHY_OFFLINE.values(), *(level.name.lower() for level in Level)]
+    needed = [
+        *Reason,
+        *Origin,
+        *Purpose,
+        *Kind,
+        *Opinion,
+        *State,
+        *WHY_OFFLINE.values(),
+        *(level.name.lower() for level in Level),
+    ]
     needed += [text for explained in TEXTS.values() for text in (explained.cause, explained.action)]
     assert {str(word) for word in needed} <= set(WORDS)
 
@@ -81,6 +90,10 @@ def contrast(one: str, other: str) -> float:
 def test_text_has_a_contrast_of_four_and_a_half(theme: Colors) -> None:
     pairs = list(product((theme.text, theme.quiet), (theme.background, theme.surface)))
     pairs += [(theme.text, theme.raised), (theme.background, theme.accent)]
-    pairs += [(theme.on_color, color) for color in (theme.good, theme.warn, theme.test)] + [(theme.on_bad, theme.bad)]
+    pairs += [(theme.on_color, color) for color in (theme.good, theme.warn, theme.test)] + [
+        (theme.on_bad, theme.bad)
+    ]
     pairs += list(product((theme.bad_text, theme.warn_text), (theme.background, theme.surface)))
-    assert min(contrast(*pair) for pair in pairs) >= 4.5, sorted((round(contrast(*pair), 2), pair) for pair in pairs)[:3]
+    assert min(contrast(*pair) for pair in pairs) >= 4.5, sorted(
+        (round(contrast(*pair), 2), pair) for pair in pairs
+    )[:3]

@@ -96,7 +96,9 @@ def test_a_peer_that_is_not_on_the_list_is_turned_away() -> None:
 
 def test_connections_that_only_sit_there_make_room() -> None:
     async def conversation(server: ModbusServer) -> None:
-        idle = await asyncio.to_thread(lambda: [socket.create_connection(("127.0.0.1", server.port)) for _ in range(MAX_PEERS + 8)])
+        idle = await asyncio.to_thread(
+            lambda: [socket.create_connection(("127.0.0.1", server.port)) for _ in range(MAX_PEERS + 8)]
+        )
         client = ModbusClient("127.0.0.1", server.port)
         await client.connect()
         assert await client.read(0, 2) == [0, 0]

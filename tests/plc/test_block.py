@@ -47,7 +47,12 @@ class Plc:
     def __init__(self, accept_simulated: bool = False) -> None:
         self.block, self.now_s, self.beat = Block(), 0.0, 0
         v = self.v = self.block.v
-        v.Serial, v.Crc, v.AcceptSimulated, v.WindowTime = pack(BY_NAME["PART_SERIAL"], "CELL-1"), 77, accept_simulated, 4.0
+        v.Serial, v.Crc, v.AcceptSimulated, v.WindowTime = (
+            pack(BY_NAME["PART_SERIAL"], "CELL-1"),
+            77,
+            accept_simulated,
+            4.0,
+        )
 
     def cycle(self, words: list[int] | None = None, wait_s: float = 0.02, beats: bool = True) -> None:
         self.now_s += wait_s
@@ -149,7 +154,9 @@ def test_a_master_never_passes_and_asks_for_the_check() -> None:
     assert not plc.v.PartOk
 
 
-@pytest.mark.parametrize(("answers", "said"), [(0, "station not READY, or without heartbeat"), (3, "no result inside the window")])
+@pytest.mark.parametrize(
+    ("answers", "said"), [(0, "station not READY, or without heartbeat"), (3, "no result inside the window")]
+)
 def test_a_window_that_passes_refuses_and_frees_the_block(answers: int, said: str) -> None:
     plc = Plc()
     plc.cycle(window())
@@ -185,13 +192,19 @@ def test_the_number_of_the_last_trigger_is_never_used_again() -> None:
 @given(st.integers(1, STATUS_WORDS - 1))
 def test_a_read_torn_between_a_wiped_and_a_good_record_never_passes(cut: int) -> None:
     good = window()
-    wiped = pack_window(STATUS_START, STATUS_WORDS, {"SEQ_HEAD": 4, "SEQ_TAIL": 4, "CONFIG_CRC": 77, "ACTIVE_RECIPE": 1})
+    wiped = pack_window(
+        STATUS_START, STATUS_WORDS, {"SEQ_HEAD": 4, "SEQ_TAIL": 4, "CONFIG_CRC": 77, "ACTIVE_RECIPE": 1}
+    )
     for torn in (good[:cut] + wiped[cut:], wiped[:cut] + good[cut:]):
         plc = Plc().until_in_work()
         plc.cycle(torn)
         same = [*torn[:1], *torn[2:]] == [*good[:1], *good[2:]]
         read = unpack_window(STATUS_START, torn)
-        of_no_use = all(read[name] == GOOD.get(name, 0) for name in read if name not in ("HEARTBEAT", "MAP_VERSION", "ACK_TRIGGER_ID"))
+        of_no_use = all(
+            read[name] == GOOD.get(name, 0)
+            for name in read
+            if name not in ("HEARTBEAT", "MAP_VERSION", "ACK_TRIGGER_ID")
+        )
         assert same or of_no_use or not plc.v.PartOk, cut
 
 

@@ -25,7 +25,9 @@ ON = Control.ENABLE
 
 
 def command(control: Control, **more: Value) -> dict[str, Value]:
-    return unpack_window(COMMAND_START, pack_window(COMMAND_START, COMMAND_WORDS, {"CONTROL": int(control), **more}))
+    return unpack_window(
+        COMMAND_START, pack_window(COMMAND_START, COMMAND_WORDS, {"CONTROL": int(control), **more})
+    )
 
 
 def status(bits: Status, **more: Value) -> dict[str, Value]:
@@ -51,9 +53,23 @@ def test_an_edge_has_its_time_in_milliseconds_and_who_made_it() -> None:
         (ON, ON, Status(0), Status.MISSED_TRIGGER, {"ERROR_CODE": 0x2103}, "TRIGGER_ID 0 or repeated"),
         (ON, ON, Status(0), Status.MAINTENANCE, {"ERROR_CODE": 0x2104}, "held too long"),
         (ON, ON | Control.RESULT_ACK, Status.RESULT_VALID, Status(0), {}, "cleared by RESULT_ACK"),
-        (ON, ON | Control.TRIGGER, Status.RESULT_VALID | Status.READY, Status.BUSY, {}, "cleared by the next TRIGGER"),
+        (
+            ON,
+            ON | Control.TRIGGER,
+            Status.RESULT_VALID | Status.READY,
+            Status.BUSY,
+            {},
+            "cleared by the next TRIGGER",
+        ),
         (ON, ON, Status.RESULT_VALID, Status(0), {}, "cleared by the station"),
-        (ON, ON, Status.READY, Status(0), {"OFFLINE_REASON": int(Offline.PLC_SILENT)}, "PLC_HEARTBEAT stands still"),
+        (
+            ON,
+            ON,
+            Status.READY,
+            Status(0),
+            {"OFFLINE_REASON": int(Offline.PLC_SILENT)},
+            "PLC_HEARTBEAT stands still",
+        ),
     ],
 )
 def test_who_cleared_what_and_which_rule_was_broken(
@@ -73,12 +89,16 @@ def test_a_clean_handshake_breaks_no_rule() -> None:
         (ON | Control.RESULT_ACK, Status(0)),
         (ON, Status.READY),
     ]
-    found = [e for before, after in pairwise(steps) for e in changes(before[0], after[0], before[1], after[1])]
+    found = [
+        e for before, after in pairwise(steps) for e in changes(before[0], after[0], before[1], after[1])
+    ]
     assert not [e for e in found if "rule broken" in e.note], found
     assert len(found) == 14
 
 
-def test_edges_are_on_disk_in_order_and_old_files_go(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_edges_are_on_disk_in_order_and_old_files_go(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "bus-2020-01-01.jsonl").write_text("")
     recorder = BusLog(tmp_path, days=30)
     for number in range(50):

@@ -17,7 +17,9 @@ def test_no_ok_is_ever_false(mode: str, monkeypatch: pytest.MonkeyPatch) -> None
     assert 25 < report.passed < 55
 
 
-def test_a_report_that_is_not_good_ends_with_one(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_report_that_is_not_good_ends_with_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setattr("deploy.chaos.judge.Judge._run", lambda _: None)
     monkeypatch.setattr("deploy.chaos.plc.KNOB_SHARE", 0.0)
     monkeypatch.setattr("deploy.chaos.plc.WINDOW_S", 0.1)

@@ -74,7 +74,9 @@ def ports() -> int:
 
 @pytest.mark.parametrize("forward", [True, False])
 @pytest.mark.parametrize("at_write", [3, 5, 6, 7, 8, 9, 10, 12])
-def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(at_write: int, forward: bool, ports: int) -> None:
+def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(
+    at_write: int, forward: bool, ports: int
+) -> None:
     """NOK and OK in turns: whatever is cut, an OK is only ever that of its own part, and the parts after it pass."""
     windows = OwnWindows("127.0.0.1", ports)
     proxy = Proxy(ports, at_write, forward)
@@ -159,7 +161,11 @@ def test_a_plc_that_is_not_there_is_waited_for(ports: int) -> None:
 
 
 def test_a_wrong_base_address_is_said_with_its_register(ports: int, caplog: pytest.LogCaptureFixture) -> None:
-    line = make_line(PlcSettings(mode="client", port=ports, poll_ms=5, timeout_ms=200, status_base=4000, plc_heartbeat_ms=300))
+    line = make_line(
+        PlcSettings(
+            mode="client", port=ports, poll_ms=5, timeout_ms=200, status_base=4000, plc_heartbeat_ms=300
+        )
+    )
 
     async def conversation() -> int:
         windows = OwnWindows("127.0.0.1", ports)
@@ -219,7 +225,9 @@ def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
             await asyncio.gather(*looks)
             assert await plc.read(STATUS_START, STATUS_WORDS) == after
             for status in seen:
-                assert status in (before[0], after[0]) or (status & before[0] & after[0] == status and not status & SHOWS)
+                assert status in (before[0], after[0]) or (
+                    status & before[0] & after[0] == status and not status & SHOWS
+                )
             assert before[0] & SHOWS == 0 or (before[0] & after[0] & ~SHOWS & 0xFFFF) in seen
             before = after
         await wire.close()

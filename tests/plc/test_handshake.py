@@ -105,7 +105,10 @@ def plc() -> Driver:
 def test_a_part_from_trigger_to_acknowledge(plc: Driver) -> None:
     assert Status.READY in plc.bits()
     plc.trigger(1)
-    assert plc.bits() & (Status.TRIGGER_ACK | Status.BUSY | Status.RESULT_VALID) == Status.TRIGGER_ACK | Status.BUSY
+    assert (
+        plc.bits() & (Status.TRIGGER_ACK | Status.BUSY | Status.RESULT_VALID)
+        == Status.TRIGGER_ACK | Status.BUSY
+    )
     assert [t.trigger_id for t in plc.started] == [1]
     plc.step(exposed=plc.started[-1].number)
     assert Status.EXPOSURE_DONE in plc.bits()
@@ -241,12 +244,16 @@ def test_a_golden_check_starts_a_part_that_says_so(plc: Driver) -> None:
 
 
 @pytest.mark.parametrize(("well", "echo"), [(True, 2), (False, REFUSED)])
-def test_a_recipe_is_loaded_with_ready_at_zero_and_the_result_wiped(well: bool, echo: int, plc: Driver) -> None:
+def test_a_recipe_is_loaded_with_ready_at_zero_and_the_result_wiped(
+    well: bool, echo: int, plc: Driver
+) -> None:
     plc.trigger(1)
     plc.step(result(plc.started[-1]))
     plc.control, plc.command = ON | Control.EXEC_COMMAND, CommandCode.LOAD_RECIPE
     plc.step()
-    assert (plc.commanded, plc.values()["CMD_ECHO"], plc.values()["VERDICT"]) == ([], REFUSED, 1), "an unread result is not wiped"
+    assert (plc.commanded, plc.values()["CMD_ECHO"], plc.values()["VERDICT"]) == ([], REFUSED, 1), (
+        "an unread result is not wiped"
+    )
     for control in (ON | Control.RESULT_ACK, ON, ON | Control.EXEC_COMMAND):
         plc.control = control
         plc.step()
@@ -303,7 +310,9 @@ def test_abort_as_a_command(plc: Driver) -> None:
     assert plc.values()["ERROR_CODE"] == 0x2102
 
 
-def test_a_link_lost_for_long_ends_the_part_and_a_result_written_again_too_late_is_an_error(plc: Driver) -> None:
+def test_a_link_lost_for_long_ends_the_part_and_a_result_written_again_too_late_is_an_error(
+    plc: Driver,
+) -> None:
     plc.trigger(1)
     plc.step(result(plc.started[-1]))
     plc.step(wait_s=TIMES.deadline_s + 0.5, link_was_lost=True)

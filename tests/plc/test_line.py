@@ -64,7 +64,9 @@ class Rig:
 def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
     mode = "server" if "server" in request.param else "client"
     swapped = "low" in request.param
-    settings = PlcSettings(mode=mode, port=free_ports(1)[0], poll_ms=5, timeout_ms=200, deadline_ms=600, low_word_first=swapped)
+    settings = PlcSettings(
+        mode=mode, port=free_ports(1)[0], poll_ms=5, timeout_ms=200, deadline_ms=600, low_word_first=swapped
+    )
     bus = BusLog(tmp_path, days=1)
     line = make_line(settings, bus)
     line.start()
@@ -200,7 +202,10 @@ def test_commands_are_carried_out_or_refused_and_parts_go_on(rig: Rig) -> None:
     with Judging(rig.line, VerdictCode.OK) as judging:
         echoes = rig.plc(conversation)
     assert echoes == [2, 0xFFFF, 20, 21, 7, 0xFFFF]
-    assert [(c.code, c.arg) for c in judging.commands] == [(CommandCode.LOAD_RECIPE, 2), (CommandCode.LOAD_RECIPE, 9)]
+    assert [(c.code, c.arg) for c in judging.commands] == [
+        (CommandCode.LOAD_RECIPE, 2),
+        (CommandCode.LOAD_RECIPE, 9),
+    ]
 
 
 def test_a_station_that_is_not_well_says_why_and_its_heartbeat_stands(rig: Rig) -> None:

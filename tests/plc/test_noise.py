@@ -18,8 +18,13 @@ FRAMED, NOISE = 92_000, 8_000
 BATCH = 10
 
 
-@given(st.lists(st.tuples(st.integers(0, 65535), st.binary(min_size=2, max_size=254)), max_size=6), st.integers(0, 1500))
-def test_frames_come_out_as_they_went_in_wherever_the_stream_is_cut(requests: list[tuple[int, bytes]], cut: int) -> None:
+@given(
+    st.lists(st.tuples(st.integers(0, 65535), st.binary(min_size=2, max_size=254)), max_size=6),
+    st.integers(0, 1500),
+)
+def test_frames_come_out_as_they_went_in_wherever_the_stream_is_cut(
+    requests: list[tuple[int, bytes]], cut: int
+) -> None:
     sent = [struct.pack(">HHH", number, 0, len(body)) + body for number, body in requests]
     stream = b"".join(sent)
     first, used, problem = frames(stream[:cut])
@@ -34,7 +39,13 @@ def request(rng: random.Random) -> bytes:
     functions = (1, 2, 3, 4, 7, 8, 11, 12, 17, 20, 21, 24, 43, 99, 127)
     body = bytes([rng.choice((0, 1, 255)), rng.choice(functions)]) + rng.randbytes(rng.randrange(0, 14))
     if rng.random() < 0.4:  # a write into the status window, and beyond
-        body = struct.pack(">BBHH", 1, rng.choice((5, 6)), rng.randrange(1600, 65536), rng.choice((0, 0xFF00, rng.randrange(65536))))
+        body = struct.pack(
+            ">BBHH",
+            1,
+            rng.choice((5, 6)),
+            rng.randrange(1600, 65536),
+            rng.choice((0, 0xFF00, rng.randrange(65536))),
+        )
     return struct.pack(">HHH", rng.randrange(65536), 0, len(body)) + body
 
 
@@ -45,7 +56,9 @@ def noise(rng: random.Random) -> bytes:
         return rng.randbytes(rng.randrange(1, 400))
     if kind == 1:
         return request(rng)[: rng.randrange(1, 8)]
-    return struct.pack(">HHHB", 1, 0, rng.choice((0, 1, 255, 65535)), 1) + rng.randbytes(rng.randrange(0, 300))
+    return struct.pack(">HHHB", 1, 0, rng.choice((0, 1, 255, 65535)), 1) + rng.randbytes(
+        rng.randrange(0, 300)
+    )
 
 
 def status_window(peer: socket.socket) -> list[int]:
@@ -82,7 +95,10 @@ def shout(port: int, seed: int, times: int) -> None:
 
 def test_a_hundred_thousand_frames_of_noise_change_nothing(line: ModbusLine) -> None:
     answered: list[int] = []
-    shouting = [threading.Thread(target=lambda seed=seed: answered.append(ask(line.port, seed, FRAMED // 2))) for seed in (1, 2)]  # type: ignore[misc]
+    shouting = [
+        threading.Thread(target=lambda seed=seed: answered.append(ask(line.port, seed, FRAMED // 2)))
+        for seed in (1, 2)
+    ]  # type: ignore[misc]
     shouting.append(threading.Thread(target=shout, args=(line.port, 3, NOISE)))
     for thread in shouting:
         thread.start()
@@ -103,7 +119,9 @@ def test_a_hundred_thousand_frames_of_noise_change_nothing(line: ModbusLine) -> 
         assert status_window(plc)[1] != before, "the heartbeat goes on"
 
 
-def test_a_peer_that_speaks_no_modbus_is_told_in_the_log(line: ModbusLine, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_peer_that_speaks_no_modbus_is_told_in_the_log(
+    line: ModbusLine, caplog: pytest.LogCaptureFixture
+) -> None:
     with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
         peer.sendall(b"GET / HTTP/1.0\r\n\r\n")
         assert peer.recv(10) == b""

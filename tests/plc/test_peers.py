@@ -35,7 +35,9 @@ def values(text: str) -> dict[int, int]:
 
 @pytest.mark.parametrize(("first", "zero_based"), [(0, True), (1, False)])
 @pytest.mark.parametrize("table", ["3", "4"])
-def test_mbpoll_reads_every_register_in_both_address_styles(first: int, zero_based: bool, table: str, line: ModbusLine) -> None:
+def test_mbpoll_reads_every_register_in_both_address_styles(
+    first: int, zero_based: bool, table: str, line: ModbusLine
+) -> None:
     options = ["-t", f"{table}:hex", "-a", "1", *(["-0"] if zero_based else [])]
     code, said = mbpoll(line, *options, "-r", str(STATUS_START + first), "-c", str(STATUS_WORDS), "127.0.0.1")
     assert code == 0, said
@@ -53,14 +55,18 @@ def test_mbpoll_writes_every_command_register(register: object, line: ModbusLine
         sent = [str(16 + first + i) for i in range(words)]
         code, said = mbpoll(line, "-t", "4", *style, "-r", str(address + first), "127.0.0.1", *sent)
         assert code == 0, said
-        _, said = mbpoll(line, "-t", "4:hex", *style, "-r", str(address + first), "-c", str(words), "127.0.0.1")
+        _, said = mbpoll(
+            line, "-t", "4:hex", *style, "-r", str(address + first), "-c", str(words), "127.0.0.1"
+        )
         assert [str(word) for _, word in sorted(values(said).items())] == sent
 
 
 @pytest.mark.parametrize("unit", ["0", "1", "255"])
 def test_mbpoll_reads_bits_at_every_unit(unit: str, line: ModbusLine) -> None:
     for table in ("0", "1"):
-        code, said = mbpoll(line, "-t", table, "-a", unit, "-0", "-r", str(STATUS_START * 16), "-c", "16", "127.0.0.1")
+        code, said = mbpoll(
+            line, "-t", table, "-a", unit, "-0", "-r", str(STATUS_START * 16), "-c", "16", "127.0.0.1"
+        )
         assert code == 0, said
         assert len(re.findall(r"\[\d+\]:\s+[01]", said)) == 16
 
@@ -86,6 +92,12 @@ def test_a_libmodbus_plc_does_the_whole_handshake_a_thousand_times(line: ModbusL
         return judged(trigger, verdict)
 
     with Judge(line, decide):
-        done = subprocess.run([tmp_path / "peer", str(line.port), "1000"], capture_output=True, text=True, timeout=100, check=False)
+        done = subprocess.run(
+            [tmp_path / "peer", str(line.port), "1000"],
+            capture_output=True,
+            text=True,
+            timeout=100,
+            check=False,
+        )
     assert done.stdout.split() == ["1000", "667", "333", "0"], done.stdout + done.stderr
     assert seen == list(range(1, 1001))

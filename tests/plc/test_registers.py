@@ -66,7 +66,8 @@ def test_word_order_is_high_first() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("VERDICT", 70000), ("VERDICT", -1), ("PART_SERIAL", "x" * 33), ("SEG_SCORE", (1, 2)), ("VERDICT", "1")]
+    ("name", "value"),
+    [("VERDICT", 70000), ("VERDICT", -1), ("PART_SERIAL", "x" * 33), ("SEG_SCORE", (1, 2)), ("VERDICT", "1")],
 )
 def test_what_does_not_fit_is_refused(name: str, value: object) -> None:
     with pytest.raises(ValueError, match=name):
@@ -80,12 +81,22 @@ def test_a_window_of_zeros_says_no_verdict() -> None:
 
 
 @pytest.mark.parametrize(
-    ("form", "name"), [("md", "register_map.md"), ("st", "weldgate.st"), ("scl", "weldgate.scl"), ("symbols", "weldgate_symbols.csv")]
+    ("form", "name"),
+    [
+        ("md", "register_map.md"),
+        ("st", "weldgate.st"),
+        ("scl", "weldgate.scl"),
+        ("symbols", "weldgate_symbols.csv"),
+    ],
 )
-def test_the_files_for_plc_tools_are_those_of_the_definition(form: str, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_files_for_plc_tools_are_those_of_the_definition(
+    form: str, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["registers", "--format", form]) == 0
     path = ROOT / "deploy" / "plc" / name
-    assert path.read_text() == capsys.readouterr().out, f"run: weldgate registers --format {form} > deploy/plc/{name}"
+    assert path.read_text() == capsys.readouterr().out, (
+        f"run: weldgate registers --format {form} > deploy/plc/{name}"
+    )
 
 
 def test_the_page_for_integrators_names_the_windows_and_registers_of_the_map() -> None:

@@ -116,7 +116,12 @@ def test_a_taken_port_is_said_in_one_line() -> None:
 
 
 def test_noise_on_the_wire_changes_nothing(line: ModbusLine) -> None:
-    for junk in (b"", b"\x00" * 300, b"GET / HTTP/1.0\r\n\r\n", b"\x00\x01\x00\x00\xff\xff\x01\x10" + b"\xff" * 250):
+    for junk in (
+        b"",
+        b"\x00" * 300,
+        b"GET / HTTP/1.0\r\n\r\n",
+        b"\x00\x01\x00\x00\xff\xff\x01\x10" + b"\xff" * 250,
+    ):
         with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
             peer.sendall(junk)
     time.sleep(0.1)

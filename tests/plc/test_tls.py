@@ -29,7 +29,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def settings(folder: Path, side: str) -> TlsSettings:
-    return TlsSettings(certificate_path=folder / f"{side}.pem", key_path=folder / f"{side}.key", ca_path=folder / "ca.pem")
+    return TlsSettings(
+        certificate_path=folder / f"{side}.pem", key_path=folder / f"{side}.key", ca_path=folder / "ca.pem"
+    )
 
 
 def test_a_plc_with_a_certificate_is_served_and_others_are_not(folder: Path, tmp_path: Path) -> None:
@@ -39,7 +41,9 @@ def test_a_plc_with_a_certificate_is_served_and_others_are_not(folder: Path, tmp
     line.checked_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))
 
     async def ready(tls: ssl.SSLContext | None) -> bool:
-        plc = SimulatedLine(RemoteWindows(lambda: ModbusClient("127.0.0.1", line.port, timeout_s=0.5, tls=tls)), False)
+        plc = SimulatedLine(
+            RemoteWindows(lambda: ModbusClient("127.0.0.1", line.port, timeout_s=0.5, tls=tls)), False
+        )
         try:
             await plc.connect(0.0)
             return await plc.wait_ready(1.0)
@@ -51,7 +55,9 @@ def test_a_plc_with_a_certificate_is_served_and_others_are_not(folder: Path, tmp
     try:
         assert asyncio.run(ready(client_context(settings(folder, "client"))))
         assert not asyncio.run(ready(None)), "plain Modbus"
-        assert not asyncio.run(ready(client_context(settings(tmp_path / "other", "client")))), "another authority"
+        assert not asyncio.run(ready(client_context(settings(tmp_path / "other", "client")))), (
+            "another authority"
+        )
         nobody = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         nobody.load_verify_locations(folder / "ca.pem")
         assert not asyncio.run(ready(nobody)), "no certificate"
@@ -62,7 +68,9 @@ def test_a_plc_with_a_certificate_is_served_and_others_are_not(folder: Path, tmp
 def test_certificates_that_cannot_be_used_are_said_before_anything_runs(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match="no such file"):
         server_context(settings(tmp_path, "server"))
-    wrong = TlsSettings(certificate_path=folder / "server.pem", key_path=folder / "client.key", ca_path=folder / "ca.pem")
+    wrong = TlsSettings(
+        certificate_path=folder / "server.pem", key_path=folder / "client.key", ca_path=folder / "ca.pem"
+    )
     with pytest.raises(SettingsError, match="no usable certificates"):
         make_line(PlcSettings(tls=wrong))
 

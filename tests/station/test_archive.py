@@ -29,7 +29,9 @@ def archive(tmp_path: Path) -> Iterator[Archive]:
 def put(archive: Archive, image: Image | None, inspection: Inspection, trigger_id: int = 5) -> Record:
     now = datetime.now(UTC)
     frame = None if image is None else Frame(image, now, "cam", Origin.SIMULATED)
-    return archive.commit(archive.begin(frame), inspection, Part("S-1", trigger_id, Origin.SIMULATED), provenance(), now)
+    return archive.commit(
+        archive.begin(frame), inspection, Part("S-1", trigger_id, Origin.SIMULATED), provenance(), now
+    )
 
 
 def test_what_is_written_reads_back_whole(archive: Archive, tmp_path: Path, rng: np.random.Generator) -> None:
@@ -120,6 +122,8 @@ def test_no_archive_is_said(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_is_seen(tmp_path: Path) -> None:
-    kept = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=10**9, thin_free_mb=10**9, warn_free_mb=10**9))
+    kept = Archive(
+        ArchiveSettings(folder=tmp_path, min_free_mb=10**9, thin_free_mb=10**9, warn_free_mb=10**9)
+    )
     assert not kept.has_room()
     kept.close()

@@ -28,7 +28,11 @@ def judged(scores: tuple[SegmentScores, ...], maps: Map = BLIND) -> tuple[Findin
 
 def test_neighbours_the_map_is_blind_to_merge_over_the_seam() -> None:
     (found,) = judged(row(s20=GONE, s0=GONE, s1=GONE))
-    assert (found.kind, found.start_deg, found.end_deg) == (Reason.MISSING_WELD, 20 * SEGMENT_DEG, 23 * SEGMENT_DEG)
+    assert (found.kind, found.start_deg, found.end_deg) == (
+        Reason.MISSING_WELD,
+        20 * SEGMENT_DEG,
+        23 * SEGMENT_DEG,
+    )
     assert found.width_mm is None
     assert found.area_mm2 is None
 
@@ -73,7 +77,9 @@ def test_a_segment_not_likelier_ok_than_not_is_nok_whatever_the_thresholds() -> 
     assert segment_kind(scores_of(0.3, 0.4, 0.3), thresholds(0.9, 0.9)) == KINDS[0]
 
 
-SCORES = st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1)), min_size=SEGMENTS, max_size=SEGMENTS)
+SCORES = st.lists(
+    st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1)), min_size=SEGMENTS, max_size=SEGMENTS
+)
 
 
 @settings(deadline=None)
@@ -81,7 +87,9 @@ SCORES = st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1)), 
 def test_every_refused_segment_lies_in_a_finding_and_without_one_none_is_refused(
     raw: list[tuple[float, float, float]], limit: float, seed: int
 ) -> None:
-    scores = tuple(scores_of(a / (a + b + c + 1e-9), b / (a + b + c + 1e-9), c / (a + b + c + 1e-9)) for a, b, c in raw)
+    scores = tuple(
+        scores_of(a / (a + b + c + 1e-9), b / (a + b + c + 1e-9), c / (a + b + c + 1e-9)) for a, b, c in raw
+    )
     rng = np.random.default_rng(seed)
     maps = np.asarray((rng.random(BLIND.shape) > 0.97) * rng.random(BLIND.shape), np.float32)
     limits = thresholds(limit, limit)
@@ -113,8 +121,12 @@ def one_hole(columns: int) -> Map:
     return maps
 
 
-@pytest.mark.parametrize(("columns", "least_mm", "refused"), [(2, 0.0, True), (2, 0.3, False), (8, 0.3, True)])
-def test_a_finding_shorter_than_the_least_length_is_told_and_tolerated(columns: int, least_mm: float, refused: bool) -> None:
+@pytest.mark.parametrize(
+    ("columns", "least_mm", "refused"), [(2, 0.0, True), (2, 0.3, False), (8, 0.3, True)]
+)
+def test_a_finding_shorter_than_the_least_length_is_told_and_tolerated(
+    columns: int, least_mm: float, refused: bool
+) -> None:
     limits = thresholds(0.5, 0.5, hole_mm=least_mm)
     found = findings(row(s4=HOLE), one_hole(columns), KINDS, limits, RING, UM)
     assert len(found) == 1
@@ -125,7 +137,10 @@ def test_a_finding_shorter_than_the_least_length_is_told_and_tolerated(columns: 
 def test_what_could_not_be_measured_or_stands_beside_something_greater_is_never_tolerated() -> None:
     limits = thresholds(0.5, 0.5, hole_mm=5.0, missing_mm=5.0)
     blind = findings(row(s4=HOLE, s9=GONE), BLIND, KINDS, limits, RING, UM)
-    assert [i for i, kind in enumerate(rejected_kinds(row(s4=HOLE, s9=GONE), blind, limits)) if kind] == [4, 9]
+    assert [i for i, kind in enumerate(rejected_kinds(row(s4=HOLE, s9=GONE), blind, limits)) if kind] == [
+        4,
+        9,
+    ]
     maps = one_hole(2)
     maps[4, 0, 2:6, 20:30] = 1
     some = thresholds(0.5, 0.5, hole_mm=0.3)
@@ -157,7 +172,10 @@ def test_least_lengths_only_tolerate_and_without_them_every_segment_over_its_lim
     assert all(kind in (None, before) for kind, before in zip(kinds, over, strict=True))
     tolerated = [i for i, (kind, before) in enumerate(zip(kinds, over, strict=True)) if before and not kind]
     for i in tolerated:
-        assert any(f.kind is over[i] and f.area_mm2 is not None for f in findings(scores, maps, KINDS, mild, RING, UM))
+        assert any(
+            f.kind is over[i] and f.area_mm2 is not None
+            for f in findings(scores, maps, KINDS, mild, RING, UM)
+        )
 
 
 def test_small_defects_side_by_side_and_long_ones_across_the_seam_are_not_small() -> None:

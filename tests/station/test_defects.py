@@ -56,7 +56,10 @@ def test_the_plc_codes_of_a_map_version_never_change() -> None:
     assert len({reason.code for reason in Reason}) == len(Reason)
 
 
-@pytest.mark.parametrize("line", ['MISSING_WELD = "missing weld", 1', 'MISSING_WELD = "missing weld", 0', 'MISSING_WELD = "missing weld"'])
+@pytest.mark.parametrize(
+    "line",
+    ['MISSING_WELD = "missing weld", 1', 'MISSING_WELD = "missing weld", 0', 'MISSING_WELD = "missing weld"'],
+)
 def test_a_reason_without_a_code_of_its_own_ends_the_start(line: str) -> None:
     source = inspect.getsource(station.defects).replace('MISSING_WELD = "missing weld", 2', line)
     with pytest.raises(ValueError, match="'missing weld' needs a PLC code of its own"):
@@ -66,7 +69,9 @@ def test_a_reason_without_a_code_of_its_own_ends_the_start(line: str) -> None:
 def test_kinds_are_distinct_and_found_by_name_and_reason() -> None:
     for field in ("name", "reason", "color_rgb"):
         assert len({getattr(kind, field) for kind in KINDS}) == len(KINDS)
-    assert [kind_named(kind.name) for kind in KINDS] == [kind_of(kind.reason) for kind in KINDS] == list(KINDS)
+    assert (
+        [kind_named(kind.name) for kind in KINDS] == [kind_of(kind.reason) for kind in KINDS] == list(KINDS)
+    )
     assert kind_of(Reason.CAMERA_LOST) is None
     with pytest.raises(ValueError, match="unknown kind of defect 'dent'; known: hole"):
         kind_named("dent")
@@ -125,7 +130,9 @@ def test_each_kind_is_measured_as_it_says() -> None:
             maps[4, THREE.index(kind), 8 + i, 8 + i] = 1
         (found,) = findings(row(s4=scores(**{kind.name: 0.9})), maps, THREE, limits(), RING, 13.0)
         cell_mm = 4 * 0.013
-        assert found.width_mm == pytest.approx(16 * cell_mm if kind.width is Width.EDGE_TO_EDGE else cell_mm, rel=0.01)
+        assert found.width_mm == pytest.approx(
+            16 * cell_mm if kind.width is Width.EDGE_TO_EDGE else cell_mm, rel=0.01
+        )
 
 
 def test_a_kind_that_has_no_map_is_found_by_whole_segments() -> None:
@@ -144,7 +151,9 @@ def test_limits_of_a_kind_that_the_model_does_not_know_are_refused() -> None:
 
 
 @pytest.mark.parametrize(("version", "rejected"), [(1, (2, 8, 19)), (2, (19,))])
-def test_records_of_older_versions_are_read_with_their_decisions(version: int, rejected: tuple[int, ...]) -> None:
+def test_records_of_older_versions_are_read_with_their_decisions(
+    version: int, rejected: tuple[int, ...]
+) -> None:
     record = from_json((OLD_RECORDS / f"version_{version}.json").read_bytes())
     assert tuple(i for i, bad in enumerate(record.inspection.nok, start=1) if bad) == rejected
     assert record.provenance.thresholds.of(HOLE).threshold == 0.46
@@ -174,13 +183,20 @@ def test_settings_under_their_old_names_are_read(tmp_path: Path) -> None:
     adjusted = {"recipes": {"2": {"model": {"missing_threshold": 0.6}}, "1": {"model": {"hole_min_mm": 0.1}}}}
     path.with_suffix(".adjusted.json").write_text(json.dumps(adjusted))
     settings = load(path)
-    assert settings.model.limits == {"hole": LimitSettings(threshold=0.3), "missing_weld": LimitSettings(min_mm=0.5)}
-    assert settings.recipes[2].model == {"limits": {"hole": {"threshold": 0.7}, "missing_weld": {"threshold": 0.6}}}
+    assert settings.model.limits == {
+        "hole": LimitSettings(threshold=0.3),
+        "missing_weld": LimitSettings(min_mm=0.5),
+    }
+    assert settings.recipes[2].model == {
+        "limits": {"hole": {"threshold": 0.7}, "missing_weld": {"threshold": 0.6}}
+    }
     assert settings.recipes[1].model == {"limits": {"hole": {"min_mm": 0.1}}}
 
 
 def test_a_value_under_its_old_and_its_new_name_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "station.toml"
     path.write_text(GOOD + "[model]\nhole_threshold = 0.3\n[model.limits.hole]\nthreshold = 0.4\n")
-    with pytest.raises(SettingsError, match=r"model\.hole_threshold is the old name of model\.limits\.hole\.threshold"):
+    with pytest.raises(
+        SettingsError, match=r"model\.hole_threshold is the old name of model\.limits\.hole\.threshold"
+    ):
         load(path)

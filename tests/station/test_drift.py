@@ -54,7 +54,9 @@ def test_a_reference_comes_back_from_its_file(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_reference_that_does_not_fit_is_refused(text: str | None, model: str, size: int, said: str, tmp_path: Path) -> None:
+def test_a_reference_that_does_not_fit_is_refused(
+    text: str | None, model: str, size: int, said: str, tmp_path: Path
+) -> None:
     path = tmp_path / "line.json"
     if text == "good":
         write_reference(path, REFERENCE)

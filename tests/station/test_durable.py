@@ -45,7 +45,9 @@ Folders = pytest.TempPathFactory
 
 
 @given(st.binary(), st.binary(), st.booleans())
-def test_what_was_written_last_is_there_alone(tmp_path_factory: Folders, old: bytes, new: bytes, durable: bool) -> None:
+def test_what_was_written_last_is_there_alone(
+    tmp_path_factory: Folders, old: bytes, new: bytes, durable: bool
+) -> None:
     path = tmp_path_factory.mktemp("d") / "x.json"
     for data in (old, new):
         write_whole(path, data, durable=durable)

@@ -16,12 +16,16 @@ def box_map(left_px: float, top_px: float, width_px: float, height_px: float) ->
         edges = np.arange(cells + 1) * CELL_PX
         return np.clip(np.minimum(edges[1:], high) - np.maximum(edges[:-1], low), 0, CELL_PX) / CELL_PX
 
-    along = covered(left_px, left_px + width_px, COLUMNS) + covered(left_px - STRIP_COLUMNS, left_px + width_px - STRIP_COLUMNS, COLUMNS)
+    along = covered(left_px, left_px + width_px, COLUMNS) + covered(
+        left_px - STRIP_COLUMNS, left_px + width_px - STRIP_COLUMNS, COLUMNS
+    )
     return np.asarray(covered(top_px, top_px + height_px, CELLS)[:, None] * along[None, :], np.float32)
 
 
 @given(st.floats(0, STRIP_COLUMNS - 1), st.floats(8, 90), st.floats(8, 900), st.floats(8, 30))
-def test_a_rectangle_is_measured_to_a_fraction_of_a_cell_wherever_it_lies(left: float, top: float, width: float, height: float) -> None:
+def test_a_rectangle_is_measured_to_a_fraction_of_a_cell_wherever_it_lies(
+    left: float, top: float, width: float, height: float
+) -> None:
     (found,) = extents(box_map(left, top, width, height), 0.0)
     assert found.end_px - found.start_px == pytest.approx(width, abs=CELL_PX)
     assert found.bottom_px - found.top_px == pytest.approx(height, abs=CELL_PX)
@@ -36,7 +40,9 @@ def test_turning_the_map_turns_the_extent_and_nothing_else(turn: int) -> None:
     values = np.maximum(box_map(300, 40, 61, 17), box_map(1500, 60, 9, 9))
     still, turned = extents(values, 0.0), extents(np.roll(values, turn, axis=1), 0.0)
     assert sorted(round(e.area_px2, 2) for e in still) == sorted(round(e.area_px2, 2) for e in turned)
-    assert sorted(round(e.end_px - e.start_px, 3) for e in still) == sorted(round(e.end_px - e.start_px, 3) for e in turned)
+    assert sorted(round(e.end_px - e.start_px, 3) for e in still) == sorted(
+        round(e.end_px - e.start_px, 3) for e in turned
+    )
 
 
 def test_an_area_over_the_seam_is_one() -> None:

@@ -35,7 +35,11 @@ def test_a_hole_is_measured_where_it_is(frames: dict[str, Image], inspector: Ins
     assert measured
     for defect in item["defects"]:
         middle = sum(defect["angle_deg"]) / 2
-        near = [f for f in measured if any(f.start_deg - 1 <= middle + turn <= f.end_deg + 1 for turn in (-360, 0, 360))]
+        near = [
+            f
+            for f in measured
+            if any(f.start_deg - 1 <= middle + turn <= f.end_deg + 1 for turn in (-360, 0, 360))
+        ]
         assert near, defect
         assert min(abs(f.length_mm - defect["length_mm"]) for f in near) < 0.15
 
@@ -55,9 +59,12 @@ def test_same_frame_same_answer_to_the_bit(frames: dict[str, Image], inspector: 
 
 
 @pytest.mark.parametrize(
-    ("gain", "reason"), [(0.02, {Reason.TOO_DARK, Reason.NO_WELD_FOUND}), (40.0, {Reason.TOO_BRIGHT, Reason.NO_WELD_FOUND})]
+    ("gain", "reason"),
+    [(0.02, {Reason.TOO_DARK, Reason.NO_WELD_FOUND}), (40.0, {Reason.TOO_BRIGHT, Reason.NO_WELD_FOUND})],
 )
-def test_wrong_exposure_is_not_judged(gain: float, reason: set[Reason], frames: dict[str, Image], inspector: Inspector) -> None:
+def test_wrong_exposure_is_not_judged(
+    gain: float, reason: set[Reason], frames: dict[str, Image], inspector: Inspector
+) -> None:
     image = np.asarray(np.clip(frames[label_with("OK")["frame"]] * gain, 0, 255), np.uint8)
     judged = inspector.inspect(image)
     assert judged.verdict is Verdict.ERROR
@@ -65,7 +72,10 @@ def test_wrong_exposure_is_not_judged(gain: float, reason: set[Reason], frames: 
 
 
 def test_a_failing_model_is_never_ok(
-    frames: dict[str, Image], ring_network: RingNetwork, classifier: Classifier, monkeypatch: pytest.MonkeyPatch
+    frames: dict[str, Image],
+    ring_network: RingNetwork,
+    classifier: Classifier,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def fail(_self: Classifier, _crops: Image) -> Judged:
         raise ModelError("out of memory")
@@ -78,7 +88,13 @@ def test_a_failing_model_is_never_ok(
 
 @pytest.mark.parametrize(
     "change",
-    [{"scores": ()}, {"scores": ok_inspection().scores[:20]}, {"ring": None}, {"reason": Reason.HOLE}, {"rejected": (Reason.HOLE,) * 21}],
+    [
+        {"scores": ()},
+        {"scores": ok_inspection().scores[:20]},
+        {"ring": None},
+        {"reason": Reason.HOLE},
+        {"rejected": (Reason.HOLE,) * 21},
+    ],
 )
 def test_ok_cannot_be_made_from_less_than_21_segments(change: dict[str, object]) -> None:
     with pytest.raises(ValueError, match="21 judged segments"):

@@ -29,13 +29,20 @@ def test_entries_are_found_by_kind_and_subject(tmp_path: Path) -> None:
     append(tmp_path, Kind.REVIEW, "Ada", "12", after="false call")
     append(tmp_path, Kind.REVIEW, "Bob", "13", after="confirmed")
     (entry,) = entries(tmp_path, (Kind.SETTING,))
-    assert (entry.who, entry.before, entry.after, entry.reason) == ("Ada", "0.46", "0.5", "too many false calls")
+    assert (entry.who, entry.before, entry.after, entry.reason) == (
+        "Ada",
+        "0.46",
+        "0.5",
+        "too many false calls",
+    )
     assert [e.subject for e in entries(tmp_path, (Kind.REVIEW,))] == ["13", "12"]
     assert [e.number for e in entries(tmp_path, (Kind.REVIEW,), subject="12")] == [2]
     assert [e.number for e in entries(tmp_path, newest_first=False, limit=2)] == [1, 2]
 
 
-def test_nothing_can_be_changed_or_removed_and_a_forger_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_nothing_can_be_changed_or_removed_and_a_forger_is_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     open_index(tmp_path).close()
     for number in range(4):
         append(tmp_path, Kind.SETTING, "Ada", f"key {number}", "1", "2", "because")
@@ -47,12 +54,18 @@ def test_nothing_can_be_changed_or_removed_and_a_forger_is_found(tmp_path: Path,
     assert main(["records", "verify", str(tmp_path)]) == 0
     with closing(sqlite3.connect(tmp_path / NAME)) as connection:
         connection.executescript("DROP TRIGGER entries_stay; DELETE FROM entries WHERE number = 2;")
-    assert list(verify_journal(tmp_path)) == [(f"{NAME}, entry 3", "was changed, or the one before it was taken out")]
+    assert list(verify_journal(tmp_path)) == [
+        (f"{NAME}, entry 3", "was changed, or the one before it was taken out")
+    ]
     assert main(["records", "verify", str(tmp_path)]) == 1
     assert "entry 3" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("pool", [ThreadPoolExecutor(4), ProcessPoolExecutor(4, get_context("spawn"))], ids=["threads", "processes"])
+@pytest.mark.parametrize(
+    "pool",
+    [ThreadPoolExecutor(4), ProcessPoolExecutor(4, get_context("spawn"))],
+    ids=["threads", "processes"],
+)
 def test_many_writers_keep_one_chain(pool: Executor, tmp_path: Path) -> None:
     with pool:
         writing = [pool.submit(append, tmp_path, Kind.ALARM, "station", str(number)) for number in range(40)]
@@ -139,7 +152,9 @@ def test_users_that_cannot_be_are_refused(folder: Path, name: str, level: Level,
         remove_user(folder, "Ada", "Ada")
 
 
-def test_five_wrong_pins_lock_for_a_minute_and_are_logged(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_five_wrong_pins_lock_for_a_minute_and_are_logged(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     for _ in range(5):
         with pytest.raises(LoginError, match="wrong PIN"):
             log_in(folder, "Bob", "9999")

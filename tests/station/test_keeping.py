@@ -39,10 +39,20 @@ def fill(folder: Path, count: int, days_apart: float = 1.0, image: Image | None 
     for number in range(count):
         when = NOW - timedelta(days=days_apart * (count - 1 - number))
         inspection = (
-            Inspection.error(Reason.NO_WELD_FOUND) if number % 10 == 9 else nok_inspection() if number % 4 == 3 else ok_inspection()
+            Inspection.error(Reason.NO_WELD_FOUND)
+            if number % 10 == 9
+            else nok_inspection()
+            if number % 4 == 3
+            else ok_inspection()
         )
         frame = Frame(image, when, "cam", Origin.SIMULATED)
-        archive.commit(archive.begin(frame), inspection, Part(f"P{number}", number + 1, Origin.SIMULATED), provenance(), when)
+        archive.commit(
+            archive.begin(frame),
+            inspection,
+            Part(f"P{number}", number + 1, Origin.SIMULATED),
+            provenance(),
+            when,
+        )
     archive.close()
 
 
@@ -69,7 +79,10 @@ def exchange(folder: Path) -> None:
 
     path = a_file(folder, 5, "json")
     path.write_text(path.read_text().replace('"serial": "P4"', '"serial": "PX"'))
-    rewrite(folder, f"UPDATE records SET record_sha256 = '{hashlib.sha256(path.read_bytes()).hexdigest()}' WHERE inspection_id = 5")
+    rewrite(
+        folder,
+        f"UPDATE records SET record_sha256 = '{hashlib.sha256(path.read_bytes()).hexdigest()}' WHERE inspection_id = 5",
+    )
 
 
 @pytest.mark.parametrize(
@@ -78,10 +91,18 @@ def exchange(folder: Path) -> None:
         (lambda f: a_file(f, 7, "json").unlink(), "00000007.json", "cannot be read"),
         (lambda f: a_file(f, 7, "png").unlink(), "00000007.json", "its frame"),
         (lambda f: a_file(f, 7, "png").write_bytes(b"x"), "00000007.json", "was changed"),
-        (lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id IN (7, 8)"), "records 7 to 8", "taken out"),
+        (
+            lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id IN (7, 8)"),
+            "records 7 to 8",
+            "taken out",
+        ),
         (lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id < 3"), "records 1 to 2", "taken out"),
         (exchange, "00000005.json", "does not follow"),
-        (lambda f: (f / "2026-11-22" / "00000005.json").write_text("{}"), "2026-11-22/00000005.json", "not listed"),
+        (
+            lambda f: (f / "2026-11-22" / "00000005.json").write_text("{}"),
+            "2026-11-22/00000005.json",
+            "not listed",
+        ),
     ],
 )
 def test_what_is_missing_altered_or_taken_out_is_named(
@@ -136,7 +157,9 @@ def test_the_quota_lets_ok_go_before_nok(folder: Path) -> None:
     assert sum(s for n, s in sizes.items() if n not in {row.inspection_id for row in gone}) <= quota
 
 
-def test_a_dry_run_changes_nothing_and_says_the_same(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_dry_run_changes_nothing_and_says_the_same(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     before = sorted((p.name, p.stat().st_size) for p in folder.rglob("*.*") if "sqlite" not in p.name)
     dry = prune(folder, KEEP, NOW, dry=True)
     assert sorted((p.name, p.stat().st_size) for p in folder.rglob("*.*") if "sqlite" not in p.name) == before
@@ -159,13 +182,17 @@ def test_a_clock_that_is_wrong_costs_no_pictures(folder: Path) -> None:
     archive = Archive(ArchiveSettings(folder=folder, **ROOMY))
     for when in (datetime(2000, 1, 1, tzinfo=UTC), NOW):
         frame = Frame(np.zeros((16, 16), np.uint8), when, "cam", Origin.SIMULATED)
-        archive.commit(archive.begin(frame), nok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), when)
+        archive.commit(
+            archive.begin(frame), nok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), when
+        )
     archive.close()
     prune(folder, KEEP, NOW)
     assert [row.frame_state for row in find(folder)[-2:]] == ["kept", "kept"]
 
 
-def test_what_a_stopped_pruning_left_is_removed_by_the_next(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_stopped_pruning_left_is_removed_by_the_next(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("station.archive.prune._Work._remove", lambda *_: None)
     gone = prune(folder, KEEP, NOW).frames
     pictures = len(list(folder.rglob("0*.png")))
@@ -199,7 +226,9 @@ def test_verify_beside_an_engine_raises_no_false_alarm(folder: Path) -> None:
     thread.start()
     frame = Frame(np.zeros((16, 16), np.uint8), NOW, "cam", Origin.SIMULATED)
     for _ in range(60):
-        archive.commit(archive.begin(frame), ok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), NOW)
+        archive.commit(
+            archive.begin(frame), ok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), NOW
+        )
     prune(folder, KEEP, NOW)
     done.set()
     thread.join()
@@ -214,7 +243,9 @@ def test_the_engine_writes_while_it_is_pruned(tmp_path: Path) -> None:
     thread = threading.Thread(target=lambda: pruned.append(prune(tmp_path / "a", KEEP, NOW).frames))
     thread.start()
     for number in range(60):
-        archive.commit(archive.begin(None), ok_inspection(), Part(f"N{number}", 1, Origin.SIMULATED), provenance(), NOW)
+        archive.commit(
+            archive.begin(None), ok_inspection(), Part(f"N{number}", 1, Origin.SIMULATED), provenance(), NOW
+        )
     thread.join()
     archive.close()
     assert pruned[0] > 50
@@ -239,7 +270,12 @@ def test_housekeeping_prunes_at_the_start_and_ends_at_once(folder: Path) -> None
         ({"min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1}, Room.ENOUGH, [True, True], True),
         ({"min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 10**9}, Room.LOW, [True, True], True),
         ({"min_free_mb": 1, "thin_free_mb": 10**9, "warn_free_mb": 10**9}, Room.THIN, [False, True], True),
-        ({"min_free_mb": 10**9, "thin_free_mb": 10**9, "warn_free_mb": 10**9}, Room.FULL, [False, False], False),
+        (
+            {"min_free_mb": 10**9, "thin_free_mb": 10**9, "warn_free_mb": 10**9},
+            Room.FULL,
+            [False, False],
+            False,
+        ),
         (
             {"min_free_mb": 10**9, "thin_free_mb": 10**9, "warn_free_mb": 10**9, "when_full": "no_pictures"},
             Room.FULL,
@@ -248,12 +284,16 @@ def test_housekeeping_prunes_at_the_start_and_ends_at_once(folder: Path) -> None
         ),
     ],
 )
-def test_three_levels_of_room(limits: dict[str, int], room: Room, kept: list[bool], takes_parts: bool, tmp_path: Path) -> None:
+def test_three_levels_of_room(
+    limits: dict[str, int], room: Room, kept: list[bool], takes_parts: bool, tmp_path: Path
+) -> None:
     archive = Archive(ArchiveSettings.model_validate({"folder": tmp_path, **limits}))
     assert (archive.room(), archive.has_room()) == (room, takes_parts)
     frame = Frame(np.zeros((8, 8), np.uint8), NOW, "cam", Origin.SIMULATED)
     for inspection in (ok_inspection(), nok_inspection()):
-        record = archive.commit(archive.begin(frame), inspection, Part("S", 1, Origin.SIMULATED), provenance(), NOW)
+        record = archive.commit(
+            archive.begin(frame), inspection, Part("S", 1, Origin.SIMULATED), provenance(), NOW
+        )
         assert record.frame_sha256 is not None, "the picture is known by its hash even if it is left out"
     archive.close()
     assert [row.frame_file is not None for row in find(tmp_path)] == kept
@@ -266,7 +306,10 @@ def test_an_archive_of_the_version_before_is_brought_up_to_date(tmp_path: Path) 
         "DROP TABLE segments",
         "DROP TABLE let_go",
         "DROP INDEX records_verdict",
-        *(f"ALTER TABLE records DROP COLUMN {name}" for name in ("purpose", "recipe", "chain", "frame_state")),
+        *(
+            f"ALTER TABLE records DROP COLUMN {name}"
+            for name in ("purpose", "recipe", "chain", "frame_state")
+        ),
         "PRAGMA user_version = 0",
     ):
         rewrite(tmp_path, statement)
@@ -283,16 +326,26 @@ def test_an_archive_of_the_version_before_is_brought_up_to_date(tmp_path: Path) 
 def test_a_clock_set_back_mixes_nothing_up(tmp_path: Path) -> None:
     archive = Archive(ArchiveSettings(folder=tmp_path, **ROOMY))
     for hours in (0, -1, -30, 1):
-        archive.commit(archive.begin(None), ok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), NOW + timedelta(hours=hours))
+        archive.commit(
+            archive.begin(None),
+            ok_inspection(),
+            Part("S", 1, Origin.SIMULATED),
+            provenance(),
+            NOW + timedelta(hours=hours),
+        )
     archive.close()
     assert [row.inspection_id for row in find(tmp_path)] == [1, 2, 3, 4]
     assert list(verify(tmp_path)) == []
 
 
 @pytest.mark.parametrize("form", [f for f in FORMATS if f not in ("parquet", "dataset")])
-def test_records_are_exported(form: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_records_are_exported(
+    form: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     target = tmp_path / "out"
-    assert main(["records", "export", str(folder), str(target), "--format", form, "--until", "2026-11-22"]) == 0
+    assert (
+        main(["records", "export", str(folder), str(target), "--format", form, "--until", "2026-11-22"]) == 0
+    )
     if form == "csv":
         rows = list(csv.DictReader(target.read_text().splitlines()))
         assert [row["inspection_id"] for row in rows] == [str(n) for n in range(1, 30)]
@@ -311,17 +364,24 @@ def test_records_are_exported(form: str, folder: Path, tmp_path: Path, capsys: p
     assert "exists already" in capsys.readouterr().err
 
 
-def test_crops_are_exported_by_what_was_found(tmp_path: Path, frames: dict[str, Image], capsys: pytest.CaptureFixture[str]) -> None:
+def test_crops_are_exported_by_what_was_found(
+    tmp_path: Path, frames: dict[str, Image], capsys: pytest.CaptureFixture[str]
+) -> None:
     fill(tmp_path / "a", 4, image=frames[label_with("OK")["frame"]])
     a_file(tmp_path / "a", 2, "png").write_bytes(b"x")
     assert main(["records", "export", str(tmp_path / "a"), str(tmp_path / "out"), "--format", "dataset"]) == 1
     assert "00000002.json: its frame" in capsys.readouterr().err
-    crops = {kind: sorted(p.name for p in (tmp_path / "out" / kind).iterdir()) for kind in ("ok", "hole", "missing_weld")}
+    crops = {
+        kind: sorted(p.name for p in (tmp_path / "out" / kind).iterdir())
+        for kind in ("ok", "hole", "missing_weld")
+    }
     assert (len(crops["ok"]), crops["hole"], crops["missing_weld"]) == (3 * 21 - 1, ["00000004_04.png"], [])
     assert read_image(tmp_path / "out" / "hole" / "00000004_04.png").shape == (128, 128)
 
 
-def test_parquet_without_its_package_is_said(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_parquet_without_its_package_is_said(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     command = ["records", "export", str(folder), str(tmp_path / "p"), "--format", "parquet"]
     if find_spec("pyarrow") is None:
         assert main(command) == 2

@@ -8,10 +8,14 @@ from station.inspection.inspector import Inspector
 from tests.parts import label_with, labels
 
 
-def test_ring_of_each_shipped_frame_is_found_to_a_pixel_or_two(frames: dict[str, Image], inspector: Inspector) -> None:
+def test_ring_of_each_shipped_frame_is_found_to_a_pixel_or_two(
+    frames: dict[str, Image], inspector: Inspector
+) -> None:
     for item in labels():
         ring = inspector.locate(frames[item["frame"]])
-        assert np.hypot(ring.center_x_px - item["center"][0], ring.center_y_px - item["center"][1]) < 1.0, item["frame"]
+        assert np.hypot(ring.center_x_px - item["center"][0], ring.center_y_px - item["center"][1]) < 1.0, (
+            item["frame"]
+        )
         assert abs(ring.radius_px - item["radius"]) < 2.0, item["frame"]
 
 
@@ -31,7 +35,9 @@ def test_nothing_is_not_a_weld(name: str, rng: np.random.Generator, inspector: I
 
 
 @pytest.mark.parametrize("side", ["left", "right", "top", "bottom"])
-def test_half_a_weld_in_view_is_never_a_ring(side: str, frames: dict[str, Image], inspector: Inspector) -> None:
+def test_half_a_weld_in_view_is_never_a_ring(
+    side: str, frames: dict[str, Image], inspector: Inspector
+) -> None:
     item = label_with("OK")
     image, (x, y) = frames[item["frame"]], (round(v) for v in item["center"])
     half = {"left": image[:, :x], "right": image[:, x:], "top": image[:y], "bottom": image[y:]}[side]
@@ -48,7 +54,9 @@ def test_a_hidden_half_is_never_a_ring(frames: dict[str, Image], inspector: Insp
 
 
 @pytest.mark.parametrize("radius_px", [150, 300, 380, 480, 600])
-def test_other_circles_are_not_taken_for_the_weld(radius_px: int, rng: np.random.Generator, inspector: Inspector) -> None:
+def test_other_circles_are_not_taken_for_the_weld(
+    radius_px: int, rng: np.random.Generator, inspector: Inspector
+) -> None:
     image = np.asarray(np.clip(rng.normal(110, 3, (2160, 4200)), 0, 255), np.uint8)
     cv2.circle(image, (2100, 1080), radius_px, 20, 14, cv2.LINE_AA)
     with pytest.raises(LocateError, match="no weld found"):
@@ -59,7 +67,14 @@ def test_other_circles_do_not_draw_the_ring_away(frames: dict[str, Image], inspe
     item = label_with("OK")
     image = frames[item["frame"]].copy()
     for radius_px in (120, 250, 600):
-        cv2.circle(image, (round(item["center"][0]) + 15, round(item["center"][1]) - 12), radius_px, 15, 12, cv2.LINE_AA)
+        cv2.circle(
+            image,
+            (round(item["center"][0]) + 15, round(item["center"][1]) - 12),
+            radius_px,
+            15,
+            12,
+            cv2.LINE_AA,
+        )
     ring = inspector.locate(image)
     assert np.hypot(ring.center_x_px - item["center"][0], ring.center_y_px - item["center"][1]) < 1.0
 

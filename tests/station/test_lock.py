@@ -32,7 +32,9 @@ lock.release()
 def held_elsewhere(path: Path) -> Iterator["subprocess.Popen[str]"]:
     """Another process that holds the lock until its input ends."""
     command = [sys.executable, "-c", HOLDER, str(path)]
-    with subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "held\n"
         try:
@@ -82,5 +84,8 @@ def test_an_archive_in_use_is_refused_until_its_engine_is_gone(tmp_path: Path) -
     with held_elsewhere(tmp_path / "engine.lock"):
         with pytest.raises(RecordError) as caught:
             Archive(settings)
-        assert str(caught.value) == f"{tmp_path}: another engine keeps its records there; stop it or set archive.folder"
+        assert (
+            str(caught.value)
+            == f"{tmp_path}: another engine keeps its records there; stop it or set archive.folder"
+        )
     Archive(settings).close()

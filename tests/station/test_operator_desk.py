@@ -56,7 +56,9 @@ IDLE_S = 600.0
 PEOPLE = {Level.OPERATOR: "Bob", Level.SETTER: "Sam", Level.QUALITY: "Quentin", Level.ADMIN: "Ada"}
 PIN = "1234"
 CAMERA = ChangeSettings((Changed(("camera", "gain_db"), 1.0),), "more light")
-LIMITS = ChangeSettings((Changed(("recipes", "1", "model", "limits", "hole", "threshold"), 0.5),), "fewer holes")
+LIMITS = ChangeSettings(
+    (Changed(("recipes", "1", "model", "limits", "hole", "threshold"), 0.5),), "fewer holes"
+)
 ONE_OF_EACH: tuple[Request, ...] = (
     LogIn("Ada", PIN),
     StayLoggedIn(True),
@@ -87,7 +89,9 @@ class Desk:
 
     def __post_init__(self) -> None:
         logins = Logins(lambda: IDLE_S)
-        self.desk = OperatorDesk(self.folder, logins, self.given.append, lambda: Counts(3, 1, 0), lambda: self.now_s)
+        self.desk = OperatorDesk(
+            self.folder, logins, self.given.append, lambda: Counts(3, 1, 0), lambda: self.now_s
+        )
 
     def ask(self, request: Request, token: str = "", age_s: float = 0.0) -> Answer:
         answers: list[Answer] = []
@@ -131,7 +135,9 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 def desk(tmp_path: Path, people: bytes, frames: dict[str, Image]) -> Iterator[Desk]:
     archive = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     frame = Frame(frames[label_with("hole")["frame"]], datetime.now(UTC), "cam", Origin.SIMULATED)
-    archive.commit(archive.begin(frame), nok_inspection(), Part("A", 1, Origin.SIMULATED), provenance(), frame.grabbed_at)
+    archive.commit(
+        archive.begin(frame), nok_inspection(), Part("A", 1, Origin.SIMULATED), provenance(), frame.grabbed_at
+    )
     archive.close()
     (tmp_path / "journal.sqlite").write_bytes(people)
     return Desk(tmp_path)
@@ -192,7 +198,9 @@ def test_an_old_request_is_answered_but_not_carried_out(desk: Desk) -> None:
     assert desk.given == []
 
 
-def test_a_fault_in_one_request_is_answered_and_ends_nothing(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_in_one_request_is_answered_and_ends_nothing(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
     token = desk.log_in(Level.SETTER)
 
     def broken(*_: object, **__: object) -> None:
@@ -331,7 +339,10 @@ def test_a_review_is_given_to_the_verdict_on_record(desk: Desk) -> None:
     assert desk.ask(GiveReview(99, Opinion.RIGHT), bob).refusal == "there is no part 99"
     assert desk.ask(GiveReview(1, Opinion.MISSED), bob).refusal == "missed defect cannot be said of NOK"
     assert desk.ask(GiveReview(1, Opinion.FALSE_CALL, "soot "), bob).done
-    assert desk.ask(GiveReview(1, Opinion.FALSE_CALL), sam).refusal == "the second review needs the level quality"
+    assert (
+        desk.ask(GiveReview(1, Opinion.FALSE_CALL), sam).refusal
+        == "the second review needs the level quality"
+    )
     assert desk.ask(GiveReview(1, Opinion.FALSE_CALL), quentin).done
     assert reviews(desk.folder)[1].agreed is Opinion.FALSE_CALL
     assert desk.noted(Kind.REVIEW)[0].reason == "soot"

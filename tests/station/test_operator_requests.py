@@ -82,7 +82,11 @@ def test_a_change_is_answered_once_it_is_in_use(desk: Desk, window: PlainWindow)
 
 def test_a_window_killed_in_any_step_of_a_change_leaves_the_old_settings_or_the_new_ones(desk: Desk) -> None:
     """What a window does is to send one message and to hear one: it can be killed before, between and after."""
-    for step, expected in (("before it has sent", OLD), ("before it has heard", NEW), ("after it has heard", NEW)):
+    for step, expected in (
+        ("before it has sent", OLD),
+        ("before it has heard", NEW),
+        ("after it has heard", NEW),
+    ):
         window = PlainWindow(desk.path)
         window.ask(LogIn("Quentin", PIN))
         number = None if expected is OLD else window.send(CHANGE)
@@ -97,12 +101,21 @@ def test_a_window_killed_in_any_step_of_a_change_leaves_the_old_settings_or_the_
         assert desk.requests is not None
 
 
-def test_a_request_cut_off_on_its_way_changes_nothing_and_ends_nothing(desk: Desk, window: PlainWindow) -> None:
+def test_a_request_cut_off_on_its_way_changes_nothing_and_ends_nothing(
+    desk: Desk, window: PlainWindow
+) -> None:
     context = zmq.Context()
     settings = desk.released.settings.channel
     socket = context.socket(zmq.DEALER)
     socket.connect(f"tcp://{settings.host}:{settings.requests_port}")
-    for rubbish in (b"", b"{", b"[]", b'{"request_id": 1}', b"\xff" * 1000, b'{"request_id": 1, "sent_s": 0, "request": {"type": "log'):
+    for rubbish in (
+        b"",
+        b"{",
+        b"[]",
+        b'{"request_id": 1}',
+        b"\xff" * 1000,
+        b'{"request_id": 1, "sent_s": 0, "request": {"type": "log',
+    ):
         socket.send(rubbish)
         socket.send_multipart([rubbish, rubbish, rubbish])
     socket.send(b"x" * (MAX_BYTES + 1))
@@ -118,7 +131,9 @@ def test_changes_of_two_windows_come_one_after_the_other(desk: Desk, window: Pla
     other.ask(LogIn("Root", PIN))
     desk.turns = False
     first = window.send(CHANGE)
-    second = other.send(ChangeSettings((Changed(("recipes", "1", "quality", "max_dark_share"), 0.5),), "trial too"))
+    second = other.send(
+        ChangeSettings((Changed(("recipes", "1", "quality", "max_dark_share"), 0.5),), "trial too")
+    )
     assert window.ask(StayLoggedIn(True)).done, "others are served while a change waits for its moment"
     assert other.ask(TakeTestImage()).done
     assert sum(isinstance(order, UseSettings) for order in desk.given) <= 1
@@ -126,7 +141,9 @@ def test_changes_of_two_windows_come_one_after_the_other(desk: Desk, window: Pla
     desk.turns = True
     assert window.answer(first).done
     assert other.answer(second).done
-    assert adjustments.read(desk.path) == {"recipes": {"1": {"quality": {"min_sharpness": 0.02, "max_dark_share": 0.5}}}}
+    assert adjustments.read(desk.path) == {
+        "recipes": {"1": {"quality": {"min_sharpness": 0.02, "max_dark_share": 0.5}}}
+    }
     assert sorted(who for who, _, _ in settings_noted(desk)) == ["Quentin", "Root"]
     other.close()
 
@@ -170,7 +187,9 @@ def test_a_flood_of_one_window_keeps_no_other_from_its_answer(desk: Desk, window
     flood.close()
 
 
-def test_a_login_ends_with_the_window_and_service_mode_with_the_login(desk: Desk, window: PlainWindow) -> None:
+def test_a_login_ends_with_the_window_and_service_mode_with_the_login(
+    desk: Desk, window: PlainWindow
+) -> None:
     assert window.ask(HoldService()).done
     assert window.ask(LogOut("window closed")).done
     window.until(lambda: bool(desk.given) and desk.given[-1] == orders.Service("Quentin", over=True))

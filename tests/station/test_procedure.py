@@ -83,7 +83,9 @@ class Line:
 class Rig:
     """A procedure with the production camera guard, archive, watch and networks."""
 
-    def __init__(self, folder: Path, camera: Camera, inspector: Inspector, alarm_log: AlarmLog, archive: Archive) -> None:
+    def __init__(
+        self, folder: Path, camera: Camera, inspector: Inspector, alarm_log: AlarmLog, archive: Archive
+    ) -> None:
         self.folder, self.camera, self.line = folder, camera, Line()
         self.events: list[Event] = []
         self.shown: list[int] = []

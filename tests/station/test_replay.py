@@ -27,7 +27,9 @@ from tests.parts import FRAMES, label_with, labels
 SHIPPED = MODEL.parent
 
 
-def test_a_folder_of_all_sorts_is_judged_as_far_as_it_can_be(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_of_all_sorts_is_judged_as_far_as_it_can_be(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     good = (FRAMES / label_with("OK")["frame"]).read_bytes()
     folder = tmp_path / "Prüfling 7 äöü"
     folder.mkdir()
@@ -74,7 +76,9 @@ def test_links_in_a_circle_end(tmp_path: Path) -> None:
         ("a.png", lambda grey: np.dstack([grey, grey, 255 - grey]), "colour"),
     ],
 )
-def test_images_from_elsewhere_are_read_with_a_word_of_what_was_lost(name: str, make: object, warning: str | None, tmp_path: Path) -> None:
+def test_images_from_elsewhere_are_read_with_a_word_of_what_was_lost(
+    name: str, make: object, warning: str | None, tmp_path: Path
+) -> None:
     grey = np.asarray(np.random.default_rng(0).integers(0, 256, (40, 60)), np.uint8)
     cv2.imwrite(str(tmp_path / name), make(grey))  # type: ignore[operator]
     image, warnings = read_marked(tmp_path / name)
@@ -84,13 +88,31 @@ def test_images_from_elsewhere_are_read_with_a_word_of_what_was_lost(name: str, 
 
 
 @pytest.mark.parametrize("um_per_px", [20.0, 10.0])
-def test_pictures_of_another_scale_are_brought_to_ours(um_per_px: float, tmp_path: Path, frames: dict[str, Image]) -> None:
+def test_pictures_of_another_scale_are_brought_to_ours(
+    um_per_px: float, tmp_path: Path, frames: dict[str, Image]
+) -> None:
     for item in labels():
         frame = frames[item["frame"]]
         factor = 13.0 / um_per_px
-        other = cv2.resize(frame, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC)
+        other = cv2.resize(
+            frame, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC
+        )
         cv2.imwrite(str(tmp_path / item["frame"]), other)
-    assert main(["replay", str(tmp_path), "--um-per-px", str(um_per_px), "--json", str(tmp_path / "out.json"), "--processes", "1"]) == 0
+    assert (
+        main(
+            [
+                "replay",
+                str(tmp_path),
+                "--um-per-px",
+                str(um_per_px),
+                "--json",
+                str(tmp_path / "out.json"),
+                "--processes",
+                "1",
+            ]
+        )
+        == 0
+    )
     entries = json.loads((tmp_path / "out.json").read_text())
     for item in labels():
         found = entries[item["frame"]]
@@ -99,7 +121,9 @@ def test_pictures_of_another_scale_are_brought_to_ours(um_per_px: float, tmp_pat
         assert found["radius"] == pytest.approx(item["radius"] * factor, rel=0.02)
 
 
-@pytest.mark.parametrize("option", [["--um-per-px", "0"], ["--processes", "0"], ["--recipe", "9"], ["--model", "/absent.onnx"]])
+@pytest.mark.parametrize(
+    "option", [["--um-per-px", "0"], ["--processes", "0"], ["--recipe", "9"], ["--model", "/absent.onnx"]]
+)
 def test_wrong_options_are_one_line(option: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["replay", str(FRAMES), *option]) == 2
     assert capsys.readouterr().err.count("\n") == 1
@@ -146,7 +170,9 @@ def record_all(folder: Path, settings: Settings, frames: dict[str, Image]) -> Pa
     inspector, provenance = load_inspector(settings)
     kept = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     for number, item in enumerate(labels(), start=1):
-        frame = Frame(frames[item["frame"]], datetime(2026, 11, 22, 12, number, tzinfo=UTC), "cam", Origin.SIMULATED)
+        frame = Frame(
+            frames[item["frame"]], datetime(2026, 11, 22, 12, number, tzinfo=UTC), "cam", Origin.SIMULATED
+        )
         part = Part(item["frame"], number, Origin.SIMULATED)
         kept.commit(kept.begin(frame), inspector.inspect(frame.image), part, provenance, frame.grabbed_at)
     kept.close()
@@ -158,7 +184,9 @@ def archive(tmp_path: Path, frames: dict[str, Image]) -> Path:
     return record_all(tmp_path / "records", for_images(SHIPPED), frames)
 
 
-def test_an_archive_is_judged_as_on_the_line_to_the_bit(archive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_archive_is_judged_as_on_the_line_to_the_bit(
+    archive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["replay", str(archive), "--processes", "1"]) == 0
     said = capsys.readouterr().out
     assert "4 parts, 0 verdicts flip" in said
@@ -170,7 +198,9 @@ def test_a_candidate_is_compared_with_the_line(
 ) -> None:
     networks = f'path = "{MODEL}"\nring_path = "{SHIPPED / "ring.onnx"}"\n'
     path = tmp_path / "station.toml"
-    path.write_text(f'[camera]\nkind = "replay"\nfolder = "."\n[model]\n{networks}[recipes.2]\nmodel = {{ hole_threshold = 0.0001 }}\n')
+    path.write_text(
+        f'[camera]\nkind = "replay"\nfolder = "."\n[model]\n{networks}[recipes.2]\nmodel = {{ hole_threshold = 0.0001 }}\n'
+    )
     ok = sum(item["verdict"] == "OK" for item in labels())
     assert main(["replay", str(archive), "-c", str(path), "--recipe", "2", "--processes", "1"]) == 0
     strict = capsys.readouterr().out
@@ -183,13 +213,18 @@ def test_a_candidate_is_compared_with_the_line(
 
 
 def test_a_record_that_the_same_judge_judges_otherwise_is_a_fault(
-    tmp_path: Path, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    frames: dict[str, Image],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     inspect = Inspector.inspect
 
     def by_a_failing_machine(inspector: Inspector, image: Image) -> Inspection:
         judged = inspect(inspector, image)
-        return replace(judged, scores=(replace(judged.scores[0], ok=judged.scores[0].ok - 1e-9), *judged.scores[1:]))
+        return replace(
+            judged, scores=(replace(judged.scores[0], ok=judged.scores[0].ok - 1e-9), *judged.scores[1:])
+        )
 
     monkeypatch.setattr(Inspector, "inspect", by_a_failing_machine)
     archive = record_all(tmp_path / "records", for_images(SHIPPED), frames)
@@ -202,7 +237,9 @@ def test_a_record_that_the_same_judge_judges_otherwise_is_a_fault(
     assert "compared with the line: 3 parts" in said.out
 
 
-def test_one_image_that_cannot_be_judged_does_not_end_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_one_image_that_cannot_be_judged_does_not_end_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     cv2.imwrite(str(tmp_path / "dot.png"), np.zeros((1, 1), np.uint8))
     (tmp_path / "part.png").write_bytes((FRAMES / label_with("OK")["frame"]).read_bytes())
     assert main(["replay", str(tmp_path), "--um-per-px", "5", "--processes", "1"]) == 1

@@ -24,7 +24,13 @@ NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
 def folder(tmp_path: Path, frames: dict[str, Image]) -> Path:
     archive = Archive(ArchiveSettings(folder=tmp_path / "a", min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     image = frames[label_with("hole")["frame"]]
-    found = [ok_inspection(), nok_inspection(), Inspection.error(Reason.NO_WELD_FOUND), nok_inspection(), ok_inspection()]
+    found = [
+        ok_inspection(),
+        nok_inspection(),
+        Inspection.error(Reason.NO_WELD_FOUND),
+        nok_inspection(),
+        ok_inspection(),
+    ]
     for number, inspection in enumerate(found):
         when = NOON + timedelta(minutes=number)
         purpose = Purpose.TEST if number == 4 else Purpose.PART
@@ -40,7 +46,13 @@ def test_the_page_says_what_the_records_say_and_needs_nothing_else(folder: Path,
     assert main(["records", "report", str(folder), str(tmp_path / "r.html"), "--title", "Lot <7>"]) == 0
     page = (tmp_path / "r.html").read_text()
     rows = dict(re.findall(r"<tr><th>([^<]+)</th><td>([^<]+)</td></tr>", page))
-    assert (rows["parts"], rows["OK"], rows["NOK"], rows["ERROR"], rows["yield"]) == ("4", "1", "2", "1", "25.0%")
+    assert (rows["parts"], rows["OK"], rows["NOK"], rows["ERROR"], rows["yield"]) == (
+        "4",
+        "1",
+        "2",
+        "1",
+        "25.0%",
+    )
     assert rows["not shown to the PLC"] == "1"
     assert page.count("data:image/jpeg;base64,") == 1
     assert page.count("no picture") == 1
@@ -63,7 +75,9 @@ def test_records_with_problems_are_in_the_report_and_in_the_exit_code(folder: Pa
     assert "cannot be read" in page
 
 
-def test_no_parts_and_no_place_are_one_line(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_parts_and_no_place_are_one_line(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["records", "report", str(folder), str(tmp_path / "r.html"), "--serial", "nobody"]) == 2
     assert "no parts among" in capsys.readouterr().err
     assert main(["records", "report", str(folder), str(tmp_path / "absent" / "r.html")]) == 2
@@ -75,8 +89,12 @@ def test_figures_hold_for_any_counts(parts: list[list[bool]]) -> None:
     counts = angle_counts(parts)
     assert sum(counts) == sum(map(sum, parts))
     face, chart = clock_face(counts), bars([("hole", sum(counts))])
-    assert [label.text for label in face.labels if label.colour == TEXT] == [str(i) for i in range(1, SEGMENTS + 1)]
-    assert [label.text for label in face.labels if label.colour == BAD] == [str(count) for count in counts if count]
+    assert [label.text for label in face.labels if label.colour == TEXT] == [
+        str(i) for i in range(1, SEGMENTS + 1)
+    ]
+    assert [label.text for label in face.labels if label.colour == BAD] == [
+        str(count) for count in counts if count
+    ]
     assert len(face.sectors) == SEGMENTS + sum(count > 0 for count in counts)
     line = trend([None, *map(float, counts)], [True] * (SEGMENTS + 1), "x", 0.5)
     places = [value for at in (*face.labels, *chart.labels, *line.dots) for value in (at.x_px, at.y_px)]

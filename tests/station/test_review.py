@@ -37,18 +37,36 @@ def test_an_opinion_counts_once_two_share_it_and_nobody_differs(opinions: dict[s
     assert (review.state is State.DISPUTED) == (len(set(opinions.values())) > 1)
 
 
-def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(tmp_path: Path, frames: dict[str, Image]) -> None:
+def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
+    tmp_path: Path, frames: dict[str, Image]
+) -> None:
     folder = tmp_path / "records"
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     image = frames[label_with("hole")["frame"]]
-    for number, inspection in enumerate([nok_inspection(), nok_inspection(), ok_inspection(), nok_inspection(), ok_inspection()]):
+    for number, inspection in enumerate(
+        [nok_inspection(), nok_inspection(), ok_inspection(), nok_inspection(), ok_inspection()]
+    ):
         frame = Frame(image, NOON + timedelta(minutes=number), "cam", Origin.SIMULATED)
-        archive.commit(archive.begin(frame), inspection, Part(f"C{number}", number + 1, Origin.SIMULATED), provenance(), frame.grabbed_at)
+        archive.commit(
+            archive.begin(frame),
+            inspection,
+            Part(f"C{number}", number + 1, Origin.SIMULATED),
+            provenance(),
+            frame.grabbed_at,
+        )
     archive.close()
     before = {path: path.read_bytes() for path in folder.rglob("*.json")}
     for who in ("Ada", "Bob"):
         give(folder, who, may_second=True, inspection_id=1, verdict="NOK", opinion=Opinion.RIGHT)
-        give(folder, who, may_second=True, inspection_id=2, verdict="NOK", opinion=Opinion.FALSE_CALL, comment="soot")
+        give(
+            folder,
+            who,
+            may_second=True,
+            inspection_id=2,
+            verdict="NOK",
+            opinion=Opinion.FALSE_CALL,
+            comment="soot",
+        )
         marks = {7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD}
         give(folder, who, may_second=True, inspection_id=3, verdict="OK", opinion=Opinion.MISSED, marks=marks)
         marks = {7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD, 9: Reason.MISSING_WELD}
@@ -67,7 +85,9 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
         give(folder, "Ada", may_second=True, inspection_id=6, verdict="ERROR", opinion=Opinion.RIGHT)
     marks = {7: Reason.HOLE}
     with pytest.raises(ValueError, match="cannot be said of OK"):
-        give(folder, "Ada", may_second=True, inspection_id=5, verdict="OK", opinion=Opinion.RIGHT, marks=marks)
+        give(
+            folder, "Ada", may_second=True, inspection_id=5, verdict="OK", opinion=Opinion.RIGHT, marks=marks
+        )
     with pytest.raises(LoginError, match="level quality"):
         give(folder, "Cy", may_second=False, inspection_id=4, verdict="NOK", opinion=Opinion.RIGHT)
     assert [reviews(folder)[n].state for n in (1, 2, 3, 4)] == [State.AGREED] * 3 + [State.ONE]
@@ -76,7 +96,10 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
     assert [said for _, said in problems] == [
         "a defect was missed: the two do not see the same kind in any segment, its crops are left out"
     ]
-    crops = {name: sorted(p.name for p in (tmp_path / "out" / name).iterdir()) for name in ("ok", "hole", "missing_weld")}
+    crops = {
+        name: sorted(p.name for p in (tmp_path / "out" / name).iterdir())
+        for name in ("ok", "hole", "missing_weld")
+    }
     assert crops["hole"] == ["00000001_04.png"]
     assert crops["missing_weld"] == ["00000005_09.png"]
     assert len(crops["ok"]) == 2 * SEGMENTS - 1
@@ -93,7 +116,9 @@ def judged(scores: list[tuple[float, float, float]], number: int = 1) -> Record:
     made = tuple(scores_of(*s) for s in scores)
     rejected = rejected_kinds(made, (), thresholds(0.5, 0.5))
     verdict, reason = (Verdict.NOK, Reason.HOLE) if any(rejected) else (Verdict.OK, None)
-    return record(replace(ok_inspection(), verdict=verdict, reason=reason, scores=made, rejected=rejected), number)
+    return record(
+        replace(ok_inspection(), verdict=verdict, reason=reason, scores=made, rejected=rejected), number
+    )
 
 
 @given(st.lists(SCORES, min_size=SEGMENTS, max_size=SEGMENTS), st.floats(0.01, 0.99), st.floats(0.01, 0.99))
@@ -141,7 +166,10 @@ def test_the_night_shift_runs_over_midnight(when: datetime, shift: str) -> None:
 
 
 def test_statistics_count_parts_by_shift_recipe_reason_and_segment() -> None:
-    parts = [record(i, n) for n, i in enumerate([ok_inspection(), nok_inspection(), Inspection.error(Reason.NO_FRAME)], 1)]
+    parts = [
+        record(i, n)
+        for n, i in enumerate([ok_inspection(), nok_inspection(), Inspection.error(Reason.NO_FRAME)], 1)
+    ]
     parts.append(replace(record(nok_inspection(), 4), purpose=Purpose.GOLDEN))
     summary = summarise(reversed(parts))
     (group,) = summary.groups
@@ -175,10 +203,16 @@ SEEN = st.builds(
 
 
 @given(SEEN)
-def test_the_station_is_ready_only_if_nothing_keeps_it_and_everything_that_lasts_is_an_alarm(seen: Seen) -> None:
+def test_the_station_is_ready_only_if_nothing_keeps_it_and_everything_that_lasts_is_an_alarm(
+    seen: Seen,
+) -> None:
     told, lasting = health(seen), alarms(seen)
     assert told.ready == (told.offline is Offline.NONE)
-    assert told.ready == (seen.camera_there and seen.can_write and not (seen.self_test_failed or seen.service or seen.attended))
-    assert told.failure == any(a in lasting for a in (Alarm.CAMERA_LOST, Alarm.ARCHIVE_FULL, Alarm.SELF_TEST_FAILED))
+    assert told.ready == (
+        seen.camera_there and seen.can_write and not (seen.self_test_failed or seen.service or seen.attended)
+    )
+    assert told.failure == any(
+        a in lasting for a in (Alarm.CAMERA_LOST, Alarm.ARCHIVE_FULL, Alarm.SELF_TEST_FAILED)
+    )
     assert told.function_check == (Alarm.MASTER_WRONG in lasting or Alarm.MASTERS_DUE in lasting)
     assert told.alarm == (int(lasting[0]) if lasting else 0)

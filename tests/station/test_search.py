@@ -57,7 +57,24 @@ def test_records_are_found(wanted: Wanted, numbers: list[int], folder: Path) -> 
 
 
 def test_people_find_by_options(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["records", "list", str(folder), "--segment", "4", "--score", "0.5", "--last", "2", "--since", "2026-11-22T12:00"]) == 0
+    assert (
+        main(
+            [
+                "records",
+                "list",
+                str(folder),
+                "--segment",
+                "4",
+                "--score",
+                "0.5",
+                "--last",
+                "2",
+                "--since",
+                "2026-11-22T12:00",
+            ]
+        )
+        == 0
+    )
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == ["29", "24"]
     with pytest.raises(SystemExit):
@@ -94,15 +111,27 @@ def test_every_search_goes_by_an_index(wanted: Wanted, folder: Path) -> None:
     assert not [step for step in seen if step.startswith("SCAN")], seen
 
 
-@pytest.mark.skipif(subprocess.run(["unshare", "-m", "true"], check=False).returncode != 0, reason="needs the right to mount")
+@pytest.mark.skipif(
+    subprocess.run(["unshare", "-m", "true"], check=False).returncode != 0, reason="needs the right to mount"
+)
 def test_an_archive_on_a_disk_mounted_read_only_can_be_listed_and_verified(tmp_path: Path) -> None:
     folder = tmp_path / "records"
     archive = Archive(ArchiveSettings(folder=folder, **ROOMY))
-    archive.commit(archive.begin(None), ok_inspection(), Part("CELL-1", 1, Origin.SIMULATED), provenance(), datetime.now(UTC))
+    archive.commit(
+        archive.begin(None),
+        ok_inspection(),
+        Part("CELL-1", 1, Origin.SIMULATED),
+        provenance(),
+        datetime.now(UTC),
+    )
     archive.close()
     mount = f"mount --bind '{folder}' '{folder}' && mount -o remount,ro,bind '{folder}' && ! touch '{folder}/x' 2>/dev/null"
-    look = " && ".join(f"'{sys.executable}' -m station records {name} '{folder}'" for name in ("list", "verify"))
-    done = subprocess.run(["unshare", "-m", "sh", "-c", f"{mount} && {look}"], capture_output=True, text=True, check=False)
+    look = " && ".join(
+        f"'{sys.executable}' -m station records {name} '{folder}'" for name in ("list", "verify")
+    )
+    done = subprocess.run(
+        ["unshare", "-m", "sh", "-c", f"{mount} && {look}"], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
     assert "CELL-1" in done.stdout
     assert "1 records, 0 entries of the journal, 0 problems" in done.stdout

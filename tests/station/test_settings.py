@@ -45,7 +45,10 @@ def test_every_path_counts_from_the_folder_of_the_file(tmp_path: Path) -> None:
         (GOOD + "expsure_us = 5\n", "expsure_us"),
         (GOOD + "[plc]\nport = 70000\n", "plc.port"),
         (GOOD + "[model]\nhole_threshold = 1.5\n", "model.limits.hole.threshold"),
-        (GOOD + "[model.limits.crakc]\nthreshold = 0.5\n", "unknown kind of defect 'crakc'; known: hole, missing_weld"),
+        (
+            GOOD + "[model.limits.crakc]\nthreshold = 0.5\n",
+            "unknown kind of defect 'crakc'; known: hole, missing_weld",
+        ),
         (GOOD + '[channel]\nhost = "nowhere"\n', "channel.host"),
         (GOOD + '[channel]\nhost = "192.168.1.5"\n', "channel.host: must be an address of this machine"),
     ],

@@ -172,7 +172,9 @@ def test_a_fault_on_the_way_is_noted_as_a_refusal(engine: Engine, monkeypatch: p
     assert engine.noted()[-1][1:] == ("0.02", "0.01", f"refused: {FAULT}")
 
 
-def test_a_file_that_cannot_be_replaced_leaves_camera_and_settings(engine: Engine, quick: Loaded, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_cannot_be_replaced_leaves_camera_and_settings(
+    engine: Engine, quick: Loaded, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(_part: Path, _target: Path) -> None:
         raise OSError(28, "No space left on device")
 
@@ -187,7 +189,9 @@ def test_a_file_that_cannot_be_replaced_leaves_camera_and_settings(engine: Engin
     assert engine.used == []
 
 
-def test_a_cycle_that_never_has_a_moment_changes_nothing_later(path: Path, quick: Loaded, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cycle_that_never_has_a_moment_changes_nothing_later(
+    path: Path, quick: Loaded, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("station.engine.settings_change.PATIENCE_S", 0.2)
     engine = Engine(path, turns=False)
     try:
@@ -216,7 +220,9 @@ class Killed(BaseException):
     """The process is gone: nothing of it runs any more, no handler either."""
 
 
-WATCHED = tuple(f"station/{name}.py" for name in ("settings_change", "settings_use", "adjustments", "durable", "released"))
+WATCHED = tuple(
+    f"station/{name}.py" for name in ("settings_change", "settings_use", "adjustments", "durable", "released")
+)
 WATCHED += ("station/journal/journal_writer.py", "station/settings/file.py")
 
 
@@ -285,16 +291,22 @@ def test_an_engine_killed_in_any_step_leaves_the_old_file_or_the_new_one(path: P
         for subject, entry in told.items():
             value = adjustments.at(after, subject.split("."))
             said = entry.reason if value is None else entry.after
-            assert said == (NOT_IN_FILE if value is None else f"{value:g}"), "the journal says what the file says"
+            assert said == (NOT_IN_FILE if value is None else f"{value:g}"), (
+                "the journal says what the file says"
+            )
     assert seen == {0.005, 0.02}, "killed before and after"
     assert line > 60
     assert adjustments.read(path) == new
 
 
-def test_changes_of_two_windows_come_one_after_the_other_and_keep_each_other(engine: Engine, quick: Loaded) -> None:
+def test_changes_of_two_windows_come_one_after_the_other_and_keep_each_other(
+    engine: Engine, quick: Loaded
+) -> None:
     engine.change_to(0.02)
     engine.change_to(0.5, ("recipes", "1", "quality", "max_dark_share"))
-    engine.change.make("Ada", (Changed(("recipes", "1", "model", "segment_thresholds"), {3: 0.6}, shown={}),), REASON)
+    engine.change.make(
+        "Ada", (Changed(("recipes", "1", "model", "segment_thresholds"), {3: 0.6}, shown={}),), REASON
+    )
     assert load(engine.path).recipes[1].quality == {"min_sharpness": 0.02, "max_dark_share": 0.5}
     assert engine.released.settings.recipes[1].model == load(engine.path).recipes[1].model
     engine.change.settle()

@@ -28,7 +28,9 @@ NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
 
 
 @given(st.dictionaries(st.text(), st.sampled_from(["OK", "NOK"])), st.dictionaries(st.text(), WORDS))
-def test_every_part_of_known_truth_is_right_or_one_kind_of_wrong(truth: dict[str, str], said: dict[str, str]) -> None:
+def test_every_part_of_known_truth_is_right_or_one_kind_of_wrong(
+    truth: dict[str, str], said: dict[str, str]
+) -> None:
     found = errors(truth, said)
     known = [name for name in said if name in truth]
     wrong = [*found.escapes, *found.false_rejects, *found.not_judged]
@@ -61,7 +63,9 @@ def test_an_interval_of_nothing_and_of_twenty_of_twenty() -> None:
         ("t.json", "{", "is needed"),
     ],
 )
-def test_a_truth_that_cannot_be_read_is_refused_in_one_line(tmp_path: Path, name: str, text: str, said: str) -> None:
+def test_a_truth_that_cannot_be_read_is_refused_in_one_line(
+    tmp_path: Path, name: str, text: str, said: str
+) -> None:
     (tmp_path / name).write_text(text)
     with pytest.raises(RecordError, match=re.escape(said)) as caught:
         read_truth(tmp_path / name)
@@ -74,14 +78,30 @@ def test_a_report_shows_escapes_and_false_rejects(tmp_path: Path, frames: dict[s
     folder = tmp_path / "records"
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     image = frames[label_with("hole")["frame"]]
-    for number, inspection in enumerate([ok_inspection(), nok_inspection(), ok_inspection(), nok_inspection()]):
+    for number, inspection in enumerate(
+        [ok_inspection(), nok_inspection(), ok_inspection(), nok_inspection()]
+    ):
         frame = Frame(image, NOON + timedelta(minutes=number), "cam", Origin.SIMULATED)
         part = Part(f"CELL-{number}", number + 1, Origin.SIMULATED)
         archive.commit(archive.begin(frame), inspection, part, provenance(), frame.grabbed_at)
     archive.close()
     with (tmp_path / "truth.csv").open("w", newline="") as file:
-        csv.writer(file).writerows([("name", "verdict"), ("CELL-0", "NOK"), ("CELL-1", "OK"), ("CELL-2", "OK"), ("ELSEWHERE", "OK")])
-    assert main(["records", "report", str(folder), str(tmp_path / "r.html"), "--truth", str(tmp_path / "truth.csv")]) == 0
+        csv.writer(file).writerows(
+            [("name", "verdict"), ("CELL-0", "NOK"), ("CELL-1", "OK"), ("CELL-2", "OK"), ("ELSEWHERE", "OK")]
+        )
+    assert (
+        main(
+            [
+                "records",
+                "report",
+                str(folder),
+                str(tmp_path / "r.html"),
+                "--truth",
+                str(tmp_path / "truth.csv"),
+            ]
+        )
+        == 0
+    )
     page = (tmp_path / "r.html").read_text()
     assert "1 of 1, 100.0%" in page, "one NOK part was judged OK"
     assert "1 of 2, 50.0%" in page, "one of two OK parts was judged NOK"
@@ -99,7 +119,16 @@ def test_a_replay_report_shows_flips_errors_and_bad_files(tmp_path: Path) -> Non
     (folder / "broken.png").write_bytes(b"x")
     truth = {Path(item["frame"]).stem: "NOK" if item["verdict"] == "OK" else "OK" for item in labels()}
     (tmp_path / "truth.json").write_text(json.dumps(truth))
-    arguments = ["replay", str(folder), "--processes", "1", "--report", str(tmp_path / "r"), "--truth", str(tmp_path / "truth.json")]
+    arguments = [
+        "replay",
+        str(folder),
+        "--processes",
+        "1",
+        "--report",
+        str(tmp_path / "r"),
+        "--truth",
+        str(tmp_path / "truth.json"),
+    ]
     assert main(arguments) == 1
     page = (tmp_path / "r" / "report.html").read_text()
     ok = sum(item["verdict"] == "OK" for item in labels())
@@ -113,15 +142,24 @@ def test_a_replay_report_shows_flips_errors_and_bad_files(tmp_path: Path) -> Non
 def test_the_processes_of_a_killed_replay_end_too(tmp_path: Path) -> None:
     for number in range(40):
         shutil.copy(FRAMES / labels()[0]["frame"], tmp_path / f"{number}.png")
-    replay = subprocess.Popen([sys.executable, "-m", "station", "replay", str(tmp_path), "--processes", "2"], stdout=subprocess.DEVNULL)
+    replay = subprocess.Popen(
+        [sys.executable, "-m", "station", "replay", str(tmp_path), "--processes", "2"],
+        stdout=subprocess.DEVNULL,
+    )
     children: list[str] = []
     until = time.monotonic() + 60
-    while len(children) < 3 and time.monotonic() < until:  # two processes, and the one that tracks what they share
-        children = subprocess.run(["pgrep", "-P", str(replay.pid)], capture_output=True, text=True, check=False).stdout.split()
+    while (
+        len(children) < 3 and time.monotonic() < until
+    ):  # two processes, and the one that tracks what they share
+        children = subprocess.run(
+            ["pgrep", "-P", str(replay.pid)], capture_output=True, text=True, check=False
+        ).stdout.split()
         time.sleep(0.1)
     replay.kill()
     replay.wait()
     assert len(children) >= 2
-    while (left := [pid for pid in children if Path(f"/proc/{pid}/exe").exists()]) and time.monotonic() < until:
+    while (
+        left := [pid for pid in children if Path(f"/proc/{pid}/exe").exists()]
+    ) and time.monotonic() < until:
         time.sleep(0.1)
     assert not left

@@ -10,7 +10,14 @@ from station.vision.unwrap import frame_to_strip, segments, strip_to_frame, unwr
 RINGS = st.builds(Ring, st.floats(600, 3600), st.floats(600, 1500), st.floats(400, 450), st.just(1.0))
 
 
-@given(RINGS, st.lists(st.tuples(st.floats(-0.49, STRIP_COLUMNS - 0.51), st.floats(0, STRIP_ROWS - 1)), min_size=1, max_size=20))
+@given(
+    RINGS,
+    st.lists(
+        st.tuples(st.floats(-0.49, STRIP_COLUMNS - 0.51), st.floats(0, STRIP_ROWS - 1)),
+        min_size=1,
+        max_size=20,
+    ),
+)
 def test_strip_to_frame_and_back_is_exact(ring: Ring, points: list[tuple[float, float]]) -> None:
     there = strip_to_frame(ring, np.array(points))
     back = frame_to_strip(ring, there)
@@ -30,7 +37,11 @@ def test_unwrap_puts_each_angle_and_radius_where_the_docstring_says() -> None:
 
 
 def test_segment_i_covers_its_arc() -> None:
-    strip = np.repeat(np.arange(STRIP_COLUMNS) // 128, STRIP_ROWS).reshape(STRIP_COLUMNS, STRIP_ROWS).T.astype(np.uint8)
+    strip = (
+        np.repeat(np.arange(STRIP_COLUMNS) // 128, STRIP_ROWS)
+        .reshape(STRIP_COLUMNS, STRIP_ROWS)
+        .T.astype(np.uint8)
+    )
     crops = segments(strip)
     assert crops.shape == (SEGMENTS, 128, 128)
     assert all((crops[i] == i).all() for i in range(SEGMENTS))

@@ -34,11 +34,25 @@ def run(*command: str, **environment: str) -> "subprocess.CompletedProcess[str]"
 def test_demo_on_the_shipped_frames(tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     count = len(labels())
-    done = run("deploy.demo.run", "--headless", "--parts", str(count), "--json", str(out), "--records", str(tmp_path / "records"))
+    done = run(
+        "deploy.demo.run",
+        "--headless",
+        "--parts",
+        str(count),
+        "--json",
+        str(out),
+        "--records",
+        str(tmp_path / "records"),
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     report = json.loads(out.read_text())
     assert [p["truth"] for p in report["parts"]] == [item["truth"] for item in labels()]
-    assert (report["escapes"], report["false_rejects"], report["errors"], report["handshakes_complete"]) == (0, 0, 0, count)
+    assert (report["escapes"], report["false_rejects"], report["errors"], report["handshakes_complete"]) == (
+        0,
+        0,
+        0,
+        count,
+    )
     assert sum(e.problem is None for e in read_records(tmp_path / "records")) == count
     replayed = tmp_path / "replay.json"
     assert run("station", "replay", str(tmp_path / "records"), "--json", str(replayed)).returncode == 0
@@ -57,7 +71,15 @@ def test_replay_names_bad_files_and_judges_the_rest(tmp_path: Path) -> None:
     (tmp_path / "text.bmp").write_text("hello")
     (tmp_path / "notes.txt").write_text("not an image, not looked at")
     (tmp_path / "größe 1.png").write_bytes((FRAMES / labels()[0]["frame"]).read_bytes())
-    done = run("station", "replay", str(tmp_path), "--json", str(tmp_path / "out.json"), "--csv", str(tmp_path / "out.csv"))
+    done = run(
+        "station",
+        "replay",
+        str(tmp_path),
+        "--json",
+        str(tmp_path / "out.json"),
+        "--csv",
+        str(tmp_path / "out.csv"),
+    )
     assert done.returncode == 1
     assert "empty.png: not a readable image" in done.stderr
     assert "text.bmp: not a readable image" in done.stderr
@@ -80,7 +102,9 @@ SETTINGS = '[camera]\nkind = "pylon"\ndevice_class = "BaslerCamEmu"\nserial = "0
         (["run"], None, "no such settings file"),
     ],
 )
-def test_mistakes_end_with_one_line_and_code_2(command: list[str], text: str | None, said: str, tmp_path: Path) -> None:
+def test_mistakes_end_with_one_line_and_code_2(
+    command: list[str], text: str | None, said: str, tmp_path: Path
+) -> None:
     path = tmp_path / "station.toml"
     if text is not None:
         path.write_text(text)
@@ -110,7 +134,9 @@ def test_wrong_paths_end_with_one_line_and_code_2(command: list[str], said: str)
 
 def test_check_says_what_is_wrong(tmp_path: Path) -> None:
     path = tmp_path / "station.toml"
-    path.write_text(SETTINGS + f'[model]\npath = "{MODEL}"\nring_path = "none.onnx"\n[plc]\nport = {free_ports(1)[0]}\n')
+    path.write_text(
+        SETTINGS + f'[model]\npath = "{MODEL}"\nring_path = "none.onnx"\n[plc]\nport = {free_ports(1)[0]}\n'
+    )
     done = run("station", "check", "-c", str(path))
     assert done.returncode == 1
     assert "BAD  model" in done.stdout

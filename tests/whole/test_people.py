@@ -47,7 +47,9 @@ class Running:
         listener = Listener(self.events.append, lambda _: None, self._orders.take)
         loaded = prepare(self.settings, 1)
         released = Released(self.settings, lambda: load(path), make_camera)
-        cycle = make_cycle(self.settings, loaded, self._line, self._archive, listener, self._alarm_log, released)
+        cycle = make_cycle(
+            self.settings, loaded, self._line, self._archive, listener, self._alarm_log, released
+        )
         self._line.start()
         self._thread = threading.Thread(target=cycle.run, args=(self._stop,))
         self._thread.start()
@@ -131,7 +133,9 @@ def enable(running: Running) -> None:
     running.until(lambda e: e.camera_there)
 
 
-def test_service_mode_holds_ready_at_0_tells_the_plc_and_ends_with_its_lease(running: Running, frames: dict[str, Image]) -> None:
+def test_service_mode_holds_ready_at_0_tells_the_plc_and_ends_with_its_lease(
+    running: Running, frames: dict[str, Image]
+) -> None:
     good = frames[label_with("OK")["frame"]]
     assert running.part("ONE", good).verdict is VerdictCode.OK
     service = Service("Ada", bit=int(Status.NOK))
@@ -155,16 +159,25 @@ def test_service_mode_holds_ready_at_0_tells_the_plc_and_ends_with_its_lease(run
         return during, without, ready
 
     during, without, ready = asyncio.run(drive())
-    assert (during["STATUS"], during["MODE"], during["OFFLINE_REASON"]) == (int(Status.NOK), 3, int(Offline.SERVICE))
+    assert (during["STATUS"], during["MODE"], during["OFFLINE_REASON"]) == (
+        int(Status.NOK),
+        3,
+        int(Offline.SERVICE),
+    )
     assert not int(str(without["STATUS"])) & (Status.READY | Status.NOK | Status.RESULT_VALID)
     assert ready
     assert running.part("TWO", good).verdict is VerdictCode.OK
 
 
-def test_setting_up_pictures_have_numbers_and_leave_no_record(running: Running, frames: dict[str, Image]) -> None:
+def test_setting_up_pictures_have_numbers_and_leave_no_record(
+    running: Running, frames: dict[str, Image]
+) -> None:
     running.feed.show(frames[label_with("OK")["frame"]])
     enable(running)
-    running.until(lambda _: any(isinstance(e, LookEvent) for e in running.events), Service("Ada", look=True, exposure_us=900.0))
+    running.until(
+        lambda _: any(isinstance(e, LookEvent) for e in running.events),
+        Service("Ada", look=True, exposure_us=900.0),
+    )
     seen = next(e for e in running.events if isinstance(e, LookEvent))
     assert seen.exposure_us == 900.0
     assert seen.ring is not None
@@ -172,24 +185,37 @@ def test_setting_up_pictures_have_numbers_and_leave_no_record(running: Running, 
     assert 20 < seen.mean_dn < 200
     assert not find(running.settings.archive.folder)
     running.feed.withdraw()
-    running.until(lambda _: any(isinstance(e, LookEvent) and e.problem for e in running.events), Service("Ada", look=True))
+    running.until(
+        lambda _: any(isinstance(e, LookEvent) and e.problem for e in running.events),
+        Service("Ada", look=True),
+    )
 
 
-def test_a_master_that_is_due_is_told_and_judged_from_the_window(running: Running, frames: dict[str, Image]) -> None:
+def test_a_master_that_is_due_is_told_and_judged_from_the_window(
+    running: Running, frames: dict[str, Image]
+) -> None:
     status = running.until(lambda e: e.camera_there)
     assert Alarm.MASTERS_DUE in status.alarms
     running.feed.show(frames[label_with("OK")["frame"]])
     running.ask(TestPicture(master="MASTER-OK"))
     running.until(lambda e: Alarm.MASTERS_DUE not in e.alarms)
-    assert [(row.purpose, row.serial, row.verdict) for row in find(running.settings.archive.folder)] == [("golden", "MASTER-OK", "OK")]
+    assert [(row.purpose, row.serial, row.verdict) for row in find(running.settings.archive.folder)] == [
+        ("golden", "MASTER-OK", "OK")
+    ]
     folder, over = running.settings.archive.folder, f"16#{Alarm.MASTERS_DUE:04X}"
-    running.until(lambda _: over in [e.subject for e in entries(folder, (Kind.ALARM_OVER,))])  # written by another thread
+    running.until(
+        lambda _: over in [e.subject for e in entries(folder, (Kind.ALARM_OVER,))]
+    )  # written by another thread
 
 
-def test_changed_settings_are_used_at_once_and_refused_ones_are_an_alarm(running: Running, frames: dict[str, Image]) -> None:
+def test_changed_settings_are_used_at_once_and_refused_ones_are_an_alarm(
+    running: Running, frames: dict[str, Image]
+) -> None:
     good = frames[label_with("OK")["frame"]]
     before = running.until(lambda e: e.camera_there)
-    running.adjust({"recipes": {"1": {"model": {"hole_threshold": 0.0001}}}, "camera": {"exposure_us": 1500.0}})
+    running.adjust(
+        {"recipes": {"1": {"model": {"hole_threshold": 0.0001}}}, "camera": {"exposure_us": 1500.0}}
+    )
     running.ask(Reload(time.time()))
     running.until(lambda e: e.camera_there and e.config_crc != before.config_crc)
     assert running.part("STRICT", good).verdict is VerdictCode.NOK
@@ -225,7 +251,9 @@ def test_a_part_is_never_judged_with_an_exposure_that_was_tried_by_hand(
     assert used[looks:][-1] == running.settings.camera.exposure_us  # type: ignore[union-attr]
 
 
-def test_a_result_that_nobody_has_read_is_not_wiped_by_changed_settings(running: Running, frames: dict[str, Image]) -> None:
+def test_a_result_that_nobody_has_read_is_not_wiped_by_changed_settings(
+    running: Running, frames: dict[str, Image]
+) -> None:
     running.feed.show(frames[label_with("OK")["frame"]])
 
     async def drive() -> tuple[list[int], bool]:
@@ -272,7 +300,11 @@ def test_a_result_that_nobody_has_read_is_not_wiped_by_changed_settings(running:
 
 @pytest.mark.parametrize(
     "change",
-    [{"camera": {"exposure_us": 0.000001}}, {"camera": {"serial": "9999"}}, {"camera": {"device_class": "BaslerGigE"}}],
+    [
+        {"camera": {"exposure_us": 0.000001}},
+        {"camera": {"serial": "9999"}},
+        {"camera": {"device_class": "BaslerGigE"}},
+    ],
     ids=["exposure out of range", "another camera", "another kind of camera"],
 )
 def test_a_camera_that_cannot_be_used_so_is_refused_and_the_one_before_goes_on(

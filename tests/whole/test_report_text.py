@@ -88,14 +88,18 @@ def evaluation(tmp_path_factory: pytest.TempPathFactory) -> Evaluation:
     lot = tmp_path_factory.mktemp("lot")
     (lot / "frames").symlink_to(FRAMES)
     (lot / "labels.json").symlink_to(FRAMES / "labels.json")
-    inspector = Inspector(RingNetwork(RING_MODEL), Classifier(MODEL), WeldSettings(), QualitySettings(), ModelSettings())
+    inspector = Inspector(
+        RingNetwork(RING_MODEL), Classifier(MODEL), WeldSettings(), QualitySettings(), ModelSettings()
+    )
     found = evaluate_lot(lot, inspector)
     error = PartResult(HOSTILE, "NOK", "ERROR", HOSTILE, None, None, None, False, ())
     return replace(found, parts=(*found.parts, error))
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory: pytest.TempPathFactory, frames: dict[str, Image], evaluation: Evaluation) -> Pages:
+def pages(
+    tmp_path_factory: pytest.TempPathFactory, frames: dict[str, Image], evaluation: Evaluation
+) -> Pages:
     """The three reports, from real records, images and networks, with hostile names throughout."""
     folder = tmp_path_factory.mktemp("pages")
     given: dict[Path, object] = {}
@@ -115,7 +119,10 @@ def pages(tmp_path_factory: pytest.TempPathFactory, frames: dict[str, Image], ev
         assert main(["replay", str(folder / "images"), str(records), *ways]) == 1
         models.report.write_report(evaluation, folder / "evaluation", HOSTILE, {HOSTILE: HOSTILE})
     files = (folder / "r.html", folder / "replay" / "report.html", folder / "evaluation" / "report.html")
-    return {template: (page, file.read_text()) for (template, page), file in zip(given.items(), files, strict=True)}
+    return {
+        template: (page, file.read_text())
+        for (template, page), file in zip(given.items(), files, strict=True)
+    }
 
 
 def _noting(given: dict[Path, object]) -> Callable[[Path, object], str]:
@@ -130,7 +137,9 @@ def _records(folder: Path, image: Image) -> Path:
     """An archive of an OK, a NOK and an ERROR part, of which the last was altered."""
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     judge = replace(provenance(), software=HOSTILE, model_version=HOSTILE, model_hash=HOSTILE)
-    for number, inspection in enumerate((ok_inspection(), nok_inspection(), Inspection.error(Reason.NO_WELD_FOUND))):
+    for number, inspection in enumerate(
+        (ok_inspection(), nok_inspection(), Inspection.error(Reason.NO_WELD_FOUND))
+    ):
         part, frame = (
             Part(f"{HOSTILE}{number}", number + 1, Origin.SIMULATED),
             Frame(image, NOON, "cam", Origin.SIMULATED),
@@ -194,5 +203,7 @@ print([name for name in opened if name.endswith((".j2", ".css"))], "jinja2" in s
 
 
 def test_importing_reads_no_template() -> None:
-    done = subprocess.run([sys.executable, "-c", IMPORTS], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTS], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
+    )
     assert done.stdout == "[] False\n"

@@ -70,7 +70,10 @@ class Station:
     def part_events(self, count: int) -> list[PartEvent]:
         """The first events of parts; each follows the answer to the PLC, so they are waited for."""
         until = time.monotonic() + 60
-        while len(found := [e for e in self.events if isinstance(e, PartEvent)]) < count and time.monotonic() < until:
+        while (
+            len(found := [e for e in self.events if isinstance(e, PartEvent)]) < count
+            and time.monotonic() < until
+        ):
             time.sleep(0.02)
         return found
 
@@ -85,12 +88,25 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
         write_reference(reference, Reference(model_hash, 20, (9.0,) * LOOK, (1.0,) * LOOK, request.param))
     return Settings.model_validate(
         {
-            "camera": {"kind": "pylon", "device_class": "BaslerCamEmu", "serial": "0815-0000", "reconnect_s": 0.1},
+            "camera": {
+                "kind": "pylon",
+                "device_class": "BaslerCamEmu",
+                "serial": "0815-0000",
+                "reconnect_s": 0.1,
+            },
             "model": {"path": MODEL, "ring_path": RING_MODEL, "reference_path": reference},
-            "archive": {"folder": tmp_path / "records", "min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1},
+            "archive": {
+                "folder": tmp_path / "records",
+                "min_free_mb": 1,
+                "thin_free_mb": 1,
+                "warn_free_mb": 1,
+            },
             "plc": {"port": free_ports(1)[0], "deadline_ms": 5000},
             "golden": {"masters": {"MASTER-OK": "OK", "MASTER-NOK": "NOK"}},
-            "recipes": {2: {"model": {"limits": {"hole": {"threshold": 0.0001}}}}, 3: {"model": {"path": tmp_path / "absent.onnx"}}},
+            "recipes": {
+                2: {"model": {"limits": {"hole": {"threshold": 0.0001}}}},
+                3: {"model": {"path": tmp_path / "absent.onnx"}},
+            },
         }
     )
 
@@ -112,7 +128,9 @@ def station(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         return taken
 
     alarm_log = AlarmLog(settings.archive.folder)
-    cycle = make_cycle(settings, loaded, line, archive, Listener(events.append, lambda _: None, orders), alarm_log)
+    cycle = make_cycle(
+        settings, loaded, line, archive, Listener(events.append, lambda _: None, orders), alarm_log
+    )
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
@@ -134,12 +152,15 @@ def test_every_part_is_judged_recorded_and_answered(station: Station, frames: di
         assert answer.handshake_complete
     records = list(read_records(station.folder))
     assert [(r.inspection_id, r.serial, str(r.verdict)) for e in records if (r := e.record) is not None] == [
-        (answer.inspection_id, f"T{i}", item["verdict"]) for i, (item, answer) in enumerate(zip(items, answers, strict=True))
+        (answer.inspection_id, f"T{i}", item["verdict"])
+        for i, (item, answer) in enumerate(zip(items, answers, strict=True))
     ]
     assert not [e.problem for e in records if e.problem]
 
 
-def test_a_plc_that_takes_no_simulated_pictures_passes_nothing(station: Station, frames: dict[str, Image]) -> None:
+def test_a_plc_that_takes_no_simulated_pictures_passes_nothing(
+    station: Station, frames: dict[str, Image]
+) -> None:
     (answer,) = station.run([frames[label_with("OK")["frame"]]], accept_simulated=False)
     assert answer.verdict is VerdictCode.OK
     assert not answer.accepted
@@ -158,7 +179,9 @@ def test_drifting_pictures_are_told_to_plc_and_window_and_still_judged(
     assert [Flags.DRIFT in a.flags for a in answers] == alarms
 
 
-def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(station: Station, frames: dict[str, Image]) -> None:
+def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(
+    station: Station, frames: dict[str, Image]
+) -> None:
     good = frames[label_with("OK")["frame"]]
 
     async def drive() -> list[object]:
@@ -187,11 +210,17 @@ def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(s
     assert recipes == [1, 2, 1]
 
 
-def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(station: Station, frames: dict[str, Image]) -> None:
+def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(
+    station: Station, frames: dict[str, Image]
+) -> None:
     (before,) = station.run([frames[label_with("OK")["frame"]]])
     station.asked.append(TestPicture())
     event = station.part_events(2)[-1]
-    assert (event.record.purpose, event.record.verdict, event.told) == (Purpose.TEST, Verdict.OK, VerdictCode.NONE)
+    assert (event.record.purpose, event.record.verdict, event.told) == (
+        Purpose.TEST,
+        Verdict.OK,
+        VerdictCode.NONE,
+    )
 
     async def look() -> dict[str, object]:
         line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
@@ -202,10 +231,15 @@ def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(stati
 
     seen = asyncio.run(look())
     assert (seen["VERDICT"], seen["ACK_TRIGGER_ID"], seen["COUNT_OK"]) == (0, before.trigger_id, 1)
-    assert [r.purpose for e in read_records(station.folder) if (r := e.record) is not None] == [Purpose.PART, Purpose.TEST]
+    assert [r.purpose for e in read_records(station.folder) if (r := e.record) is not None] == [
+        Purpose.PART,
+        Purpose.TEST,
+    ]
 
 
-def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(station: Station, frames: dict[str, Image]) -> None:
+def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(
+    station: Station, frames: dict[str, Image]
+) -> None:
     good, bad = frames[label_with("OK")["frame"]], frames[label_with("hole")["frame"]]
 
     async def drive() -> list[tuple[VerdictCode, str | None]]:
@@ -233,7 +267,11 @@ def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(s
     assert seen[1] == (VerdictCode.OK, None)
     assert seen[3] == (VerdictCode.TEST, "OK and NOK are not 1 and 0")
     assert seen[5] == (VerdictCode.OK, None)
-    assert [(r.purpose is Purpose.GOLDEN, str(r.verdict)) for e in read_records(station.folder) if (r := e.record) is not None] == [
+    assert [
+        (r.purpose is Purpose.GOLDEN, str(r.verdict))
+        for e in read_records(station.folder)
+        if (r := e.record) is not None
+    ] == [
         (True, "OK"),
         (False, "OK"),
         (True, "OK"),
@@ -248,7 +286,9 @@ def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
     settings: Settings, frames: dict[str, Image], tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     cv2.imwrite(str(tmp_path / "stored.png"), frames[label_with("hole")["frame"]])
-    model = settings.model.model_copy(update={"self_test_path": tmp_path / "stored.png", "self_test_verdict": "NOK", "self_test_s": 0.5})
+    model = settings.model.model_copy(
+        update={"self_test_path": tmp_path / "stored.png", "self_test_verdict": "NOK", "self_test_s": 0.5}
+    )
     loaded = prepare(settings.model_copy(update={"model": model}), 1)
     watch = Watch(loaded, {}, None, 0.0)
     watch.idle()
@@ -263,7 +303,9 @@ def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
         prepare(settings.model_copy(update={"model": model}), 1)
 
 
-def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(station: Station, frames: dict[str, Image]) -> None:
+def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(
+    station: Station, frames: dict[str, Image]
+) -> None:
     good = frames[label_with("OK")["frame"]]
     black = good * 0
     answers = station.run([None, good[:1000, :2000], black, good])
@@ -271,7 +313,9 @@ def test_what_cannot_be_judged_is_error_and_the_next_part_goes_on(station: Stati
     reasons = [Reason.INCOMPLETE_FRAME, Reason.WRONG_SIZE, Reason.NO_WELD_FOUND]
     assert [a.reason for a in answers[:3]] == [r.code for r in reasons]
     assert all(a.handshake_complete for a in answers)
-    assert [r.verdict for e in read_records(station.folder) if (r := e.record) is not None] == [Verdict.ERROR] * 3 + [Verdict.OK]
+    assert [r.verdict for e in read_records(station.folder) if (r := e.record) is not None] == [
+        Verdict.ERROR
+    ] * 3 + [Verdict.OK]
 
 
 @pytest.mark.parametrize("fault", [RecordError("disk full"), RuntimeError("nobody foresaw this")])
@@ -290,7 +334,11 @@ def test_a_record_that_cannot_be_written_is_error(
 def test_a_camera_fault_that_nobody_foresaw_costs_one_part_and_leaves_a_record(
     station: Station, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    good, grab, faults = frames[label_with("OK")["frame"]], PylonCamera.grab, [ValueError("nobody foresaw this")]
+    good, grab, faults = (
+        frames[label_with("OK")["frame"]],
+        PylonCamera.grab,
+        [ValueError("nobody foresaw this")],
+    )
 
     def fails_once(camera: PylonCamera) -> Frame:
         if faults:
@@ -299,8 +347,14 @@ def test_a_camera_fault_that_nobody_foresaw_costs_one_part_and_leaves_a_record(
 
     monkeypatch.setattr(PylonCamera, "grab", fails_once)
     answers = station.run([good, good])
-    assert [(a.verdict, a.reason) for a in answers] == [(VerdictCode.ERROR, Reason.INTERNAL.code), (VerdictCode.OK, 0)]
-    assert [r.inspection.reason for e in read_records(station.folder) if (r := e.record) is not None] == [Reason.INTERNAL, None]
+    assert [(a.verdict, a.reason) for a in answers] == [
+        (VerdictCode.ERROR, Reason.INTERNAL.code),
+        (VerdictCode.OK, 0),
+    ]
+    assert [r.inspection.reason for e in read_records(station.folder) if (r := e.record) is not None] == [
+        Reason.INTERNAL,
+        None,
+    ]
 
 
 def test_the_verdict_is_seen_only_after_its_record_is_on_disk(
@@ -318,7 +372,9 @@ def test_the_verdict_is_seen_only_after_its_record_is_on_disk(
     assert listed == [1, 2]
 
 
-def test_a_camera_that_is_absent_at_start_is_said_and_found_later(station: Station, settings: Settings, frames: dict[str, Image]) -> None:
+def test_a_camera_that_is_absent_at_start_is_said_and_found_later(
+    station: Station, settings: Settings, frames: dict[str, Image]
+) -> None:
     os.environ["PYLON_CAMEMU"] = "0"
 
     async def absent_then_back() -> Answer:

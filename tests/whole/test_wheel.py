@@ -22,7 +22,9 @@ FOREIGN = 'raise RuntimeError("somebody else\'s package was imported")\n'
 COMMANDS = ("weldgate", "weldgate-synth", "weldgate-models", "weldgate-demo")
 
 
-def run(command: Sequence[str | Path], folder: Path, **environment: str) -> "subprocess.CompletedProcess[str]":
+def run(
+    command: Sequence[str | Path], folder: Path, **environment: str
+) -> "subprocess.CompletedProcess[str]":
     clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     return subprocess.run(
         command,
@@ -84,15 +86,25 @@ def test_a_wheel_holds_one_package_with_every_file_of_the_rooms(wheel: Path) -> 
         names = archive.namelist()
     assert {name.split("/")[0] for name in names} == {"weldgate", "weldgate-0.1.0.dist-info"}
     expected = {path.relative_to(ROOT).as_posix() for room in ROOMS for path in (ROOT / room).rglob("*.py")}
-    expected |= {path.relative_to(ROOT).as_posix() for path in (ROOT / "station").rglob("*") if path.suffix in (".j2", ".css", ".qm")}
-    expected |= {f"{room}/shipped/{path.name}" for room in ("models", "synth") for path in (ROOT / room / "shipped").iterdir()}
+    expected |= {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "station").rglob("*")
+        if path.suffix in (".j2", ".css", ".qm")
+    }
+    expected |= {
+        f"{room}/shipped/{path.name}"
+        for room in ("models", "synth")
+        for path in (ROOT / room / "shipped").iterdir()
+    }
     expected |= {
         "models/report.html.j2",
         "deploy/station.toml",
         *(f"deploy/frames/{path.name}" for path in FRAMES.iterdir()),
     }
     own = {name for name in expected if name.startswith("deploy/package/weldgate/")}
-    assert expected - own == {name.removeprefix("weldgate/") for name in names if name.count("/") > 1 and "dist-info" not in name}
+    assert expected - own == {
+        name.removeprefix("weldgate/") for name in names if name.count("/") > 1 and "dist-info" not in name
+    }
 
 
 def test_every_command_runs_next_to_foreign_packages(installed: Path, hostile: Path) -> None:
@@ -127,7 +139,9 @@ def test_a_room_started_as_a_process_of_its_own_is_the_installed_one(installed: 
     assert (done.returncode, done.stdout) == (0, "weldgate 0.1.0\n"), done.stderr
 
 
-def test_a_worker_of_a_cluster_finds_the_installed_rooms_once_prepared(installed: Path, hostile: Path) -> None:
+def test_a_worker_of_a_cluster_finds_the_installed_rooms_once_prepared(
+    installed: Path, hostile: Path
+) -> None:
     code = "import weldgate; weldgate.dask_setup(None); import synth; print(synth.__doc__ is not None)"
     done = run([installed / "python", "-P", "-c", code], hostile, PYTHONPATH=str(hostile))
     assert done.stdout == "True\n", done.stderr
@@ -140,7 +154,9 @@ def test_other_programs_still_find_their_own_packages(installed: Path, hostile: 
     assert done.stdout == "theirs\n", done.stderr
 
 
-def test_a_foreign_package_that_is_loaded_already_is_refused_in_one_line(installed: Path, hostile: Path) -> None:
+def test_a_foreign_package_that_is_loaded_already_is_refused_in_one_line(
+    installed: Path, hostile: Path
+) -> None:
     (hostile / "models" / "__init__.py").write_text("")
     (hostile / "sitecustomize.py").write_text("import models\n")
     done = run([installed / "weldgate", "--version"], hostile, PYTHONPATH=str(hostile))

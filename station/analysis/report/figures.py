@@ -115,7 +115,9 @@ def bars(named: Sequence[tuple[str, int]]) -> Bars:
     return Bars(26 * len(rows) + 6, tuple(drawn), tuple(labels))
 
 
-def trend(values: Sequence[float | None], bad: Sequence[bool], name: str, limit: float | None = None) -> Trend:
+def trend(
+    values: Sequence[float | None], bad: Sequence[bool], name: str, limit: float | None = None
+) -> Trend:
     """Lay out one value for each part in their order; `bad` parts are red, a limit is dashed."""
     known = [v for v in values if v is not None] + ([] if limit is None else [limit])
     top = max([*known, 1e-9]) * 1.08

@@ -49,7 +49,9 @@ class ReportPage:
     problems: Rows
 
 
-def report(entries: Sequence[Listed], folder: Path, title: str, truth: Mapping[str, str] | None = None) -> str:
+def report(
+    entries: Sequence[Listed], folder: Path, title: str, truth: Mapping[str, str] | None = None
+) -> str:
     """Return the page as HTML text; `truth`: what the serials are.
 
     Raises RecordError if no part is among the entries.
@@ -119,8 +121,14 @@ def _summary(records: Sequence[Record], not_shown: int) -> Rows:
 
 
 def _found(records: Sequence[Record]) -> Found | None:
-    reasons = Counter(str(record.inspection.reason) for record in records if record.inspection.reason is not None)
-    judged = [[kind is not None for kind in record.inspection.rejected] for record in records if record.inspection.scores]
+    reasons = Counter(
+        str(record.inspection.reason) for record in records if record.inspection.reason is not None
+    )
+    judged = [
+        [kind is not None for kind in record.inspection.rejected]
+        for record in records
+        if record.inspection.scores
+    ]
     return Found(bars(list(reasons.items())), clock_face(angle_counts(judged))) if reasons else None
 
 
@@ -157,7 +165,8 @@ def _nok(records: Sequence[Record], folder: Path) -> Gallery | None:
 
 def _weld(record: Record, folder: Path) -> Weld:
     said = "; ".join(
-        f"{f.kind} at {f.start_deg:.0f}°, {f.length_mm:.2f} mm long" + ("" if f.area_mm2 is None else f", {f.area_mm2:.2f} mm²")
+        f"{f.kind} at {f.start_deg:.0f}°, {f.length_mm:.2f} mm long"
+        + ("" if f.area_mm2 is None else f", {f.area_mm2:.2f} mm²")
         for f in record.inspection.findings
     ) or str(record.verdict)
     text = f"{record.serial}, {record.grabbed_at:%Y-%m-%d %H:%M:%S}: {said}"
@@ -165,8 +174,14 @@ def _weld(record: Record, folder: Path) -> Weld:
 
 
 def _strip(record: Record, folder: Path) -> StripImage:
-    refused = ((i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i, kind in enumerate(record.inspection.rejected) if kind is not None)
-    return strip(None if record.frame_file is None else folder / record.frame_file, record.inspection.ring, refused)
+    refused = (
+        (i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG)
+        for i, kind in enumerate(record.inspection.rejected)
+        if kind is not None
+    )
+    return strip(
+        None if record.frame_file is None else folder / record.frame_file, record.inspection.ring, refused
+    )
 
 
 def _judges(records: Sequence[Record]) -> tuple[tuple[str, ...], ...]:

@@ -10,7 +10,9 @@ def write_pdf(page: str, target: Path) -> None:
     try:
         from weasyprint import HTML
     except ImportError:
-        raise RecordError("PDF needs the package weasyprint: pip install 'weldgate[pdf]'; or print the HTML page in a browser") from None
+        raise RecordError(
+            "PDF needs the package weasyprint: pip install 'weldgate[pdf]'; or print the HTML page in a browser"
+        ) from None
     except OSError as error:
         said = str(error).splitlines()[0]
         raise RecordError(

@@ -48,15 +48,32 @@ WORDS = (
     QT_TRANSLATE_NOOP("data", "a recipe is loaded"),
     QT_TRANSLATE_NOOP("data", "the stored frame is judged differently"),
     QT_TRANSLATE_NOOP("data", "a picture is taken or settings are loaded, as asked for in the window"),
-    QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check that a part lies in the nest, and the camera's view"),
-    QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check the part's seat and the camera's position"),
-    QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, set width and height of the camera as in the settings"),
-    QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check network cable, switch and jumbo frames"),
+    QT_TRANSLATE_NOOP(
+        "data",
+        "judge the part again; if it comes back, check that a part lies in the nest, and the camera's view",
+    ),
+    QT_TRANSLATE_NOOP(
+        "data", "judge the part again; if it comes back, check the part's seat and the camera's position"
+    ),
+    QT_TRANSLATE_NOOP(
+        "data",
+        "judge the part again; if it comes back, set width and height of the camera as in the settings",
+    ),
+    QT_TRANSLATE_NOOP(
+        "data", "judge the part again; if it comes back, check network cable, switch and jumbo frames"
+    ),
     QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check the light and the exposure"),
-    QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check focus and glass, and that the part stands still"),
+    QT_TRANSLATE_NOOP(
+        "data",
+        "judge the part again; if it comes back, check focus and glass, and that the part stands still",
+    ),
     QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check power and cable of the camera"),
-    QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check the trigger line and camera.timeout_ms"),
-    QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, restart the station, restore the model file"),
+    QT_TRANSLATE_NOOP(
+        "data", "judge the part again; if it comes back, check the trigger line and camera.timeout_ms"
+    ),
+    QT_TRANSLATE_NOOP(
+        "data", "judge the part again; if it comes back, restart the station, restore the model file"
+    ),
     QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, check the archive's disk"),
     QT_TRANSLATE_NOOP("data", "judge the part again; if it comes back, send the engine's log to the maker"),
     QT_TRANSLATE_NOOP("data", "no result within the deadline"),
@@ -145,7 +162,9 @@ WORDS = (
     QT_TRANSLATE_NOOP("data", "there was no moment without a part in work: nothing was changed"),
     QT_TRANSLATE_NOOP("data", "too many changes of settings wait: try again"),
     QT_TRANSLATE_NOOP("data", "the camera cannot be used with these values: see the engine's log"),
-    QT_TRANSLATE_NOOP("data", "the settings file cannot be used: see the engine's log; the settings before stay in use"),
+    QT_TRANSLATE_NOOP(
+        "data", "the settings file cannot be used: see the engine's log; the settings before stay in use"
+    ),
     QT_TRANSLATE_NOOP("data", "not in the settings file at the start"),
     QT_TRANSLATE_NOOP("data", "the settings file said otherwise at the start"),
     QT_TRANSLATE_NOOP("data", "settings file"),

@@ -73,9 +73,19 @@ def lamp(status: StatusEvent | None, part: PartEvent | None, now_s: float) -> La
 
 def _of_part(part: PartEvent, masters_due: bool, strength: float) -> Lamp:
     record = part.record
-    reason, found = "" if record.inspection.reason is None else str(record.inspection.reason), str(record.verdict)
+    reason, found = (
+        "" if record.inspection.reason is None else str(record.inspection.reason),
+        str(record.verdict),
+    )
     if record.purpose is not Purpose.PART:
-        return Lamp("TEST", "T", Tone.TEST, strength, "master" if record.purpose is Purpose.GOLDEN else "test picture", found)
+        return Lamp(
+            "TEST",
+            "T",
+            Tone.TEST,
+            strength,
+            "master" if record.purpose is Purpose.GOLDEN else "test picture",
+            found,
+        )
     if part.told is VerdictCode.ERROR:
         late = record.verdict is not Verdict.ERROR
         return Lamp("ERROR", "!", Tone.WARN, strength, "result came too late for the PLC" if late else reason)
@@ -95,7 +105,11 @@ def _fade(age_s: float) -> float:
 
 def foot(part: PartEvent | None, now_s: float) -> str:
     """Return what stands below the lamp: which part it is of, and how old that is; `now_s`: monotonic time."""
-    return "" if part is None else f"{part.record.serial or part.record.inspection_id} · {_ago(now_s - part.at_s)}"
+    return (
+        ""
+        if part is None
+        else f"{part.record.serial or part.record.inspection_id} · {_ago(now_s - part.at_s)}"
+    )
 
 
 def _ago(age_s: float) -> str:

@@ -143,7 +143,9 @@ class Received(QObject):
             image = QImage.fromData(preview.frame_jpeg)
             if not image.isNull():
                 mode = Qt.TransformationMode.SmoothTransformation
-                self._thumbs[preview.inspection_id] = image.scaled(THUMB_PX, THUMB_PX, Qt.AspectRatioMode.KeepAspectRatio, mode)
+                self._thumbs[preview.inspection_id] = image.scaled(
+                    THUMB_PX, THUMB_PX, Qt.AspectRatioMode.KeepAspectRatio, mode
+                )
         self.preview_came.emit()
 
     def _on_look(self, event: LookEvent) -> None:

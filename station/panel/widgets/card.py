@@ -137,4 +137,6 @@ class Table(QTableWidget):
     def texts(self) -> list[list[str]]:
         """What stands in it."""
         cells = range(self.columnCount())
-        return [[item.text() if (item := self.item(r, c)) else "" for c in cells] for r in range(self.rowCount())]
+        return [
+            [item.text() if (item := self.item(r, c)) else "" for c in cells] for r in range(self.rowCount())
+        ]

@@ -33,7 +33,9 @@ class Chart(pg.PlotWidget):  # type: ignore[misc]
         """Small: the layout gives it room."""
         return QSize(240, 160)
 
-    def show_trend(self, values: Sequence[float | None], bad: Sequence[bool], limits: Sequence[float]) -> None:
+    def show_trend(
+        self, values: Sequence[float | None], bad: Sequence[bool], limits: Sequence[float]
+    ) -> None:
         """One dot a part, refused ones as red crosses; limits dashed."""
         c = theme.colors()
         self.clear()
@@ -43,7 +45,13 @@ class Chart(pg.PlotWidget):  # type: ignore[misc]
             if chosen:
                 x, y = np.array(chosen, float).T
                 self.plot(
-                    x, y, pen=None, symbol=symbol, symbolSize=size, symbolBrush=color, symbolPen=pg.mkPen(color, width=2 if red else 0)
+                    x,
+                    y,
+                    pen=None,
+                    symbol=symbol,
+                    symbolSize=size,
+                    symbolBrush=color,
+                    symbolPen=pg.mkPen(color, width=2 if red else 0),
                 )
         for limit in limits:
             self.addLine(y=limit, pen=pg.mkPen(c.warn_text, width=1, style=Qt.PenStyle.DashLine))
@@ -66,7 +74,14 @@ class Chart(pg.PlotWidget):  # type: ignore[misc]
     def show_bars(self, named: Sequence[tuple[str, int]]) -> None:
         """One bar for each name."""
         self.clear()
-        self.addItem(_bars(np.arange(len(named)) - 0.35, np.array([count for _, count in named], float), 0.7, theme.colors().bad))
+        self.addItem(
+            _bars(
+                np.arange(len(named)) - 0.35,
+                np.array([count for _, count in named], float),
+                0.7,
+                theme.colors().bad,
+            )
+        )
         self.getAxis("bottom").setTicks([[(i, f"{name} {count}") for i, (name, count) in enumerate(named)]])
         self.setXRange(-0.5, max(len(named), 3) - 0.5)
         self.setYRange(0, max([count for _, count in named] + [1]) * 1.05)

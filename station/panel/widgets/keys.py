@@ -57,5 +57,8 @@ class Keys(QWidget):
             return
         text = {BACK: "", ENTER: "\r", SPACE: " "}.get(key, key)
         for kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
-            QApplication.sendEvent(place, QKeyEvent(kind, CODES.get(key, Qt.Key.Key_unknown), Qt.KeyboardModifier.NoModifier, text))
+            QApplication.sendEvent(
+                place,
+                QKeyEvent(kind, CODES.get(key, Qt.Key.Key_unknown), Qt.KeyboardModifier.NoModifier, text),
+            )
         self.shift.setChecked(False)

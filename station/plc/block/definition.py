@@ -6,7 +6,17 @@ Only what IEC 61131-3 and SCL have in common is used, so that the dialects diffe
 from dataclasses import dataclass, field
 from typing import Literal
 
-from station.plc.map.registers import BY_NAME, COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, Control, Flags, Register, Status
+from station.plc.map.registers import (
+    BY_NAME,
+    COMMAND_WORDS,
+    MAP,
+    STATUS_START,
+    STATUS_WORDS,
+    Control,
+    Flags,
+    Register,
+    Status,
+)
 
 NAME = "WeldgateStation"
 RECORD = "WeldgateStatus"
@@ -42,19 +52,30 @@ POINTS: tuple[tuple[str, str], ...] = (
     ("heartbeat stands still", "BeatFresh"),
     ("RESULT_VALID is 0", bit("STATUS", Status.RESULT_VALID)),
     ("OK and NOK are not 1 and 0", f"{bit('STATUS', Status.OK)} AND NOT {bit('STATUS', Status.NOK)}"),
-    ("VERDICT is not OK with its complement", f"({word('VERDICT')} = 16#0001) AND ({word('VERDICT_INV')} = 16#FFFE)"),
+    (
+        "VERDICT is not OK with its complement",
+        f"({word('VERDICT')} = 16#0001) AND ({word('VERDICT_INV')} = 16#FFFE)",
+    ),
     ("SEQ_HEAD differs from SEQ_TAIL", f"({word('SEQ_HEAD')} = {word('SEQ_TAIL')})"),
     ("result of another trigger", f"(WORD_TO_UINT({word('RESULT_TRIGGER_ID')}) = TriggerId)"),
     ("result of another serial", "SerialSame"),
     ("recipe is not the expected one", f"(WORD_TO_UINT({word('ACTIVE_RECIPE')}) = Recipe)"),
     ("configuration is not the released one", f"({word('CONFIG_CRC')} = Crc)"),
     ("result too old", f"(WORD_TO_UINT({word('RESULT_AGE_10MS')}) <= {MAX_AGE_10MS})"),
-    ("station reports failure or function check", f"NOT {bit('STATUS', Status.FAILURE | Status.FUNCTION_CHECK)}"),
+    (
+        "station reports failure or function check",
+        f"NOT {bit('STATUS', Status.FAILURE | Status.FUNCTION_CHECK)}",
+    ),
     ("picture of an emulated camera", f"AcceptSimulated OR NOT {bit('FLAGS', Flags.SIMULATED)}"),
 )
 """The acceptance rule: what is said if a point does not hold, and the point. OK passes only if all hold in one read."""
 NOT_READY, NO_RESULT = len(POINTS) + 1, len(POINTS) + 2
-REFUSALS = ("", *(name for name, _ in POINTS), "station not READY, or without heartbeat", "no result inside the window")
+REFUSALS = (
+    "",
+    *(name for name, _ in POINTS),
+    "station not READY, or without heartbeat",
+    "no result inside the window",
+)
 """What Refusal means."""
 
 
@@ -74,22 +95,34 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("input", "Fresh", "BOOL", "TRUE in the cycle in which a new read has arrived"),
     Variable("input", "Start", "BOOL", "rising edge: judge the part that is in the nest now"),
     Variable("input", "Golden", "BOOL", "a master is in the nest; it never passes"),
-    Variable("input", "Serial", "ARRAY[0..15] OF WORD", "serial of the part, two characters a word, the first in the high byte"),
+    Variable(
+        "input",
+        "Serial",
+        "ARRAY[0..15] OF WORD",
+        "serial of the part, two characters a word, the first in the high byte",
+    ),
     Variable("input", "Recipe", "UINT", "expected ACTIVE_RECIPE", initial="1"),
     Variable("input", "Crc", "WORD", "released CONFIG_CRC"),
     Variable("input", "AcceptSimulated", "BOOL", "TRUE only in a demonstration without a camera"),
     Variable("input", "WindowTime", "TIME", "the result must come within", initial="T#4s"),
-    Variable("input", "Extra", "WORD", "further bits of CONTROL, as CLEAR_ERROR, EXEC_COMMAND, SET_OFFLINE, ABORT"),
+    Variable(
+        "input", "Extra", "WORD", "further bits of CONTROL, as CLEAR_ERROR, EXEC_COMMAND, SET_OFFLINE, ABORT"
+    ),
     Variable("input", "CommandCode", "UINT", "COMMAND for EXEC_COMMAND"),
     Variable("input", "Argument", "UINT", "ARG of the command"),
-    Variable("output", "Command", f"ARRAY[0..{COMMAND_WORDS - 1}] OF WORD", "command window, to be written whole"),
+    Variable(
+        "output", "Command", f"ARRAY[0..{COMMAND_WORDS - 1}] OF WORD", "command window, to be written whole"
+    ),
     Variable("output", "PartOk", "BOOL", "the part may pass; FALSE until all points held in one read"),
     Variable("output", "PartDone", "BOOL", "the part is answered"),
     Variable("output", "Busy", "BOOL", "a part is in work"),
     Variable("output", "Refusal", "UINT", "first point that did not hold, 0: none"),
     Variable("output", "Info", RECORD, "the status window, decoded"),
     Variable(
-        "local", "State", "UINT", "0 idle, 10 wait for READY and a heartbeat, 20 number written, 30 triggered, 40 in work, 50 acknowledged"
+        "local",
+        "State",
+        "UINT",
+        "0 idle, 10 wait for READY and a heartbeat, 20 number written, 30 triggered, 40 in work, 50 acknowledged",
     ),
     Variable("local", "Control", "WORD", "bits of the handshake"),
     Variable("local", "TriggerId", "UINT", "of the part in the nest"),
@@ -114,7 +147,11 @@ def body() -> str:
         f"        IF (Refusal = 0) AND NOT ({point}) THEN\n            Refusal := {number}; (* {name} *)\n        END_IF;"
         for number, (name, point) in enumerate(POINTS, start=1)
     )
-    enable, trigger, acknowledge = int(Control.ENABLE), int(Control.ENABLE | Control.TRIGGER), int(Control.ENABLE | Control.RESULT_ACK)
+    enable, trigger, acknowledge = (
+        int(Control.ENABLE),
+        int(Control.ENABLE | Control.TRIGGER),
+        int(Control.ENABLE | Control.RESULT_ACK),
+    )
     golden = trigger | int(Control.GOLDEN_CHECK)
     serial, echo = BY_NAME["PART_SERIAL"].address, BY_NAME["SERIAL_ECHO"].address - STATUS_START
     return f"""\
@@ -221,7 +258,9 @@ def _decoded() -> str:
     for name, _, r in fields():
         at = r.address - STATUS_START
         if r.kind in ("u32", "f32"):
-            lines.append(f"Info.{name} := (WORD_TO_UDINT(Window[{at}]) * 65536) + WORD_TO_UDINT(Window[{at + 1}]);")
+            lines.append(
+                f"Info.{name} := (WORD_TO_UDINT(Window[{at}]) * 65536) + WORD_TO_UDINT(Window[{at + 1}]);"
+            )
         elif r.words == 1:
             lines.append(f"Info.{name} := WORD_TO_UINT(Window[{at}]);")
         else:

@@ -12,7 +12,9 @@ from typing import Any
 
 from station.plc.block.definition import RECORD, VARIABLES, body, fields
 
-TOKEN = re.compile(r"\(\*.*?\*\)|:=|<>|<=|>=|\.\.|T#\w+|16#[0-9A-F]+|[A-Za-z_]\w*|\d+|[-+*()\[\];,.:=<>]", re.S)
+TOKEN = re.compile(
+    r"\(\*.*?\*\)|:=|<>|<=|>=|\.\.|T#\w+|16#[0-9A-F]+|[A-Za-z_]\w*|\d+|[-+*()\[\];,.:=<>]", re.S
+)
 LEVELS: tuple[dict[str, str], ...] = (
     {"OR": "|"},
     {"AND": "&"},
@@ -52,7 +54,9 @@ class _Writer:
     def _take(self, *wanted: str) -> str:
         token = self._peek()
         if wanted and token not in wanted:
-            raise ValueError(f"{token!r} where {' or '.join(wanted)} belongs, near {' '.join(self._tokens[self._at - 5 : self._at + 5])}")
+            raise ValueError(
+                f"{token!r} where {' or '.join(wanted)} belongs, near {' '.join(self._tokens[self._at - 5 : self._at + 5])}"
+            )
         self._at += 1
         return token
 
@@ -61,7 +65,11 @@ class _Writer:
 
     def _statements(self, depth: int, ends: tuple[str, ...]) -> None:
         before = len(self.lines)
-        while self._peek() and self._peek() not in ends and not (self._peek().isdigit() and self._peek(1) == ":"):
+        while (
+            self._peek()
+            and self._peek() not in ends
+            and not (self._peek().isdigit() and self._peek(1) == ":")
+        ):
             self._statement(depth)
         if len(self.lines) == before:
             self._put(depth, "pass")

@@ -37,20 +37,42 @@ class Explained:
 
 
 TEXTS: dict[int, Explained] = {
-    Alarm.CAMERA_LOST: Explained("camera lost", "check power and cable of the camera; the station connects again by itself"),
-    Alarm.ARCHIVE_FULL: Explained("no records can be written", "make room on the archive's disk, check that it is writable"),
+    Alarm.CAMERA_LOST: Explained(
+        "camera lost", "check power and cable of the camera; the station connects again by itself"
+    ),
+    Alarm.ARCHIVE_FULL: Explained(
+        "no records can be written", "make room on the archive's disk, check that it is writable"
+    ),
     Alarm.DISK_FILLS: Explained("the archive's disk fills", "make room, or keep less (archive.keep)"),
-    Alarm.PLC_SILENT: Explained("the PLC's heartbeat stands still", "check the PLC program and the network to the PLC"),
-    Alarm.SELF_TEST_FAILED: Explained("the stored frame is judged differently", "restart the station; check the PC's memory"),
-    Alarm.MASTER_WRONG: Explained("a master was judged wrongly", "check master, light and focus; judge the master again"),
+    Alarm.PLC_SILENT: Explained(
+        "the PLC's heartbeat stands still", "check the PLC program and the network to the PLC"
+    ),
+    Alarm.SELF_TEST_FAILED: Explained(
+        "the stored frame is judged differently", "restart the station; check the PC's memory"
+    ),
+    Alarm.MASTER_WRONG: Explained(
+        "a master was judged wrongly", "check master, light and focus; judge the master again"
+    ),
     Alarm.MASTERS_DUE: Explained("the check of the masters is due", "put the masters in and judge them"),
-    Alarm.PICTURES_DRIFT: Explained("the pictures drift", "check light, focus, glass and the surface of the parts"),
-    Alarm.SETTINGS_REFUSED: Explained("changed settings could not be used", "see the engine's log; the settings before are in use"),
-    ERROR_DEADLINE: Explained("no result within the deadline", "see cycle times on the page Statistics; check the PC's load"),
+    Alarm.PICTURES_DRIFT: Explained(
+        "the pictures drift", "check light, focus, glass and the surface of the parts"
+    ),
+    Alarm.SETTINGS_REFUSED: Explained(
+        "changed settings could not be used", "see the engine's log; the settings before are in use"
+    ),
+    ERROR_DEADLINE: Explained(
+        "no result within the deadline", "see cycle times on the page Statistics; check the PC's load"
+    ),
     ERROR_ABORTED: Explained("the PLC aborted the part", "see the line's program"),
-    ERROR_BAD_TRIGGER_ID: Explained("TRIGGER_ID was 0 or repeated", "correct the PLC program: each part needs a new number"),
-    ERROR_STUCK_BIT: Explained("TRIGGER or RESULT_ACK was held too long", "correct the PLC program: see the page Line"),
-    ERROR_LINK_LOST: Explained("the link was lost while the result was written", "check the network to the PLC"),
+    ERROR_BAD_TRIGGER_ID: Explained(
+        "TRIGGER_ID was 0 or repeated", "correct the PLC program: each part needs a new number"
+    ),
+    ERROR_STUCK_BIT: Explained(
+        "TRIGGER or RESULT_ACK was held too long", "correct the PLC program: see the page Line"
+    ),
+    ERROR_LINK_LOST: Explained(
+        "the link was lost while the result was written", "check the network to the PLC"
+    ),
 }
 
 _AGAIN = "judge the part again; if it comes back, "

@@ -54,10 +54,15 @@ def as_markdown() -> str:
     text += "\n## COMMAND\n\n" + _table(("value", "name"), [(str(int(v)), v.name) for v in CommandCode])
     text += f"\nCMD_ECHO is the command once CMD_DONE is 1, or {REFUSED} if it was refused.\n"
     text += "\n## OFFLINE_REASON\n\n" + _table(("value", "name"), [(str(int(v)), v.name) for v in Offline])
-    text += "\n## REASON\n\n" + _table(("value", "meaning"), [(str(reason.code), str(reason)) for reason in Reason])
+    text += "\n## REASON\n\n" + _table(
+        ("value", "meaning"), [(str(reason.code), str(reason)) for reason in Reason]
+    )
     text += "\n## ERROR_CODE\n\nThe same code stands in the window of the station. From 16#3000 on: states that last, told while\n"
     text += "nothing else is.\n\n"
-    return text + _table(("value", "cause", "what to do"), [(f"16#{code:04X}", e.cause, e.action) for code, e in sorted(TEXTS.items())])
+    return text + _table(
+        ("value", "cause", "what to do"),
+        [(f"16#{code:04X}", e.cause, e.action) for code, e in sorted(TEXTS.items())],
+    )
 
 
 def _bits(flags: type[IntFlag]) -> list[tuple[str, ...]]:

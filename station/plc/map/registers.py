@@ -126,7 +126,9 @@ class Register:
     @property
     def words(self) -> int:
         """Registers taken."""
-        return {"u16": self.count, "u32": 2 * self.count, "f32": 2 * self.count, "ascii": self.count // 2}[self.kind]
+        return {"u16": self.count, "u32": 2 * self.count, "f32": 2 * self.count, "ascii": self.count // 2}[
+            self.kind
+        ]
 
 
 MAP: tuple[Register, ...] = (
@@ -163,7 +165,12 @@ MAP: tuple[Register, ...] = (
     Register(121, "RESULT_AGE_10MS", "u16", "age of the result, 10 ms"),
     Register(122, "SERIAL_ECHO", "ascii", "part serial as judged", count=32),
     Register(138, "SEG_SCORE", "u16", "score of each segment x 10000", count=SEGMENTS),
-    Register(159, "MODE", "u16", "1 PRD: parts are judged; 2 SBY: READY is 0; 3 ENG: someone works on the station, see SERVICE"),
+    Register(
+        159,
+        "MODE",
+        "u16",
+        "1 PRD: parts are judged; 2 SBY: READY is 0; 3 ENG: someone works on the station, see SERVICE",
+    ),
     Register(160, "OFFLINE_REASON", "u16", "why READY is 0"),
     Register(161, "CMD_ECHO", "u16", "last command done; 65535: refused"),
     Register(162, "COUNT_OK", "u32", "parts OK since start"),

@@ -89,7 +89,11 @@ def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, 
             "FLAGS": int(shown.flags),
         }
         if shown.seg_scores:
-            window |= {"SEG_SCORE": shown.seg_scores, "WORST_SEG": worst, "WORST_SCORE": shown.seg_scores[worst]}
+            window |= {
+                "SEG_SCORE": shown.seg_scores,
+                "WORST_SEG": worst,
+                "WORST_SCORE": shown.seg_scores[worst],
+            }
     return window
 
 

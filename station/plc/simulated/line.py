@@ -115,7 +115,10 @@ class SimulatedLine:
 
     async def wait_ready(self, timeout_s: float) -> bool:
         """Hold ENABLE and the heartbeat until READY; False after the time."""
-        return await self._until(lambda: bool(self._v.Window[0] & Status.READY) and number(self.status(), "MAP_VERSION") > 0, timeout_s)
+        return await self._until(
+            lambda: bool(self._v.Window[0] & Status.READY) and number(self.status(), "MAP_VERSION") > 0,
+            timeout_s,
+        )
 
     async def command(self, code: CommandCode | int, arg: int = 0, timeout_s: float = 30.0) -> int | None:
         """Have a command carried out; its echo, None if none came."""
@@ -130,7 +133,9 @@ class SimulatedLine:
         """The status window as read last."""
         return unpack_window(STATUS_START, self._v.Window)
 
-    async def inspect(self, serial: str, window_s: float = 4.0, golden: bool = False, knobs: frozenset[Knob] = frozenset()) -> Answer:
+    async def inspect(
+        self, serial: str, window_s: float = 4.0, golden: bool = False, knobs: frozenset[Knob] = frozenset()
+    ) -> Answer:
         """One part: trigger, wait for the result inside the window, apply the rule, acknowledge."""
         v = self._v
         v.Serial, v.Golden, v.WindowTime = pack(BY_NAME["PART_SERIAL"], serial), golden, window_s
@@ -156,7 +161,9 @@ class SimulatedLine:
                 break
             await asyncio.sleep(POLL_S)
         self._knobs = frozenset()
-        return self._answer(seen, None if triggered_s is None or valid_s is None else (valid_s - triggered_s) * 1000)
+        return self._answer(
+            seen, None if triggered_s is None or valid_s is None else (valid_s - triggered_s) * 1000
+        )
 
     def _answer(self, seen: dict[str, Value] | None, took_ms: float | None) -> Answer:
         v = self._v
@@ -224,7 +231,12 @@ class SimulatedLine:
 
     async def _write(self, words: list[int]) -> None:
         held = self._written
-        if Knob.STUCK_ACK in self._knobs and held is not None and held[0] & Control.RESULT_ACK and not words[0] & Control.RESULT_ACK:
+        if (
+            Knob.STUCK_ACK in self._knobs
+            and held is not None
+            and held[0] & Control.RESULT_ACK
+            and not words[0] & Control.RESULT_ACK
+        ):
             await asyncio.sleep(self._rng.uniform(*SILENCE_S))
         if Knob.ID_REUSE in self._knobs:
             words = [*words[:2], number(self.status(), "ACK_TRIGGER_ID"), *words[3:]]

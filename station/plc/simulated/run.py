@@ -38,7 +38,11 @@ async def run_line(run: LineRun) -> int:
     windows: Windows = OwnWindows(run.host, run.port)
     if run.mode == "server":
         windows = RemoteWindows(lambda: ModbusClient(run.host, run.port))
-    line, rng, passed = SimulatedLine(windows, run.accept_simulated, seed=run.seed), random.Random(run.seed), 0
+    line, rng, passed = (
+        SimulatedLine(windows, run.accept_simulated, seed=run.seed),
+        random.Random(run.seed),
+        0,
+    )
     await line.connect(timeout_s=5)
     try:
         for number in range(1, run.parts + 1):

@@ -56,7 +56,9 @@ class Complaints:
         if now - told_s < TOLD_S:
             self._told[name, why] = untold + 1, told_s
             return
-        log.warning("Modbus peer %s %s; connection closed%s", name, why, f" ({untold} more before)" if untold else "")
+        log.warning(
+            "Modbus peer %s %s; connection closed%s", name, why, f" ({untold} more before)" if untold else ""
+        )
         if len(self._told) > MAX_TOLD:
             self._told.clear()
         self._told[name, why] = 0, now

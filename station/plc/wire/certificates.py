@@ -22,7 +22,9 @@ def make_certificates(folder: Path, host: str, days: int) -> list[Path]:
         from cryptography.hazmat.primitives.asymmetric import ec
         from cryptography.x509.oid import NameOID
     except ImportError:
-        raise SettingsError("certificates need the package cryptography: pip install 'weldgate[tls]'") from None
+        raise SettingsError(
+            "certificates need the package cryptography: pip install 'weldgate[tls]'"
+        ) from None
     if not 1 <= days <= 3650:
         raise SettingsError(f"--days is {days}; 1 to 3650 is allowed")
     paths = [folder / name for name in ("ca.pem", "server.pem", "server.key", "client.pem", "client.key")]
@@ -36,13 +38,22 @@ def make_certificates(folder: Path, host: str, days: int) -> list[Path]:
         return x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, text)])
 
     def certificate(
-        subject: str, key: ec.EllipticCurvePrivateKey, signer: ec.EllipticCurvePrivateKey, extensions: list[x509.ExtensionType]
+        subject: str,
+        key: ec.EllipticCurvePrivateKey,
+        signer: ec.EllipticCurvePrivateKey,
+        extensions: list[x509.ExtensionType],
     ) -> bytes:
-        builder = x509.CertificateBuilder(name("weldgate trial authority"), name(subject), key.public_key(), x509.random_serial_number())
-        builder = builder.not_valid_before(now - timedelta(minutes=5)).not_valid_after(now + timedelta(days=days))
+        builder = x509.CertificateBuilder(
+            name("weldgate trial authority"), name(subject), key.public_key(), x509.random_serial_number()
+        )
+        builder = builder.not_valid_before(now - timedelta(minutes=5)).not_valid_after(
+            now + timedelta(days=days)
+        )
         for extension in (*extensions, x509.SubjectKeyIdentifier.from_public_key(key.public_key())):
             builder = builder.add_extension(extension, critical=isinstance(extension, x509.BasicConstraints))
-        builder = builder.add_extension(x509.AuthorityKeyIdentifier.from_issuer_public_key(signer.public_key()), critical=False)
+        builder = builder.add_extension(
+            x509.AuthorityKeyIdentifier.from_issuer_public_key(signer.public_key()), critical=False
+        )
         return builder.sign(signer, hashes.SHA256()).public_bytes(serialization.Encoding.PEM)
 
     authority, server, client = (ec.generate_private_key(ec.SECP256R1()) for _ in range(3))
@@ -50,15 +61,23 @@ def make_certificates(folder: Path, host: str, days: int) -> list[Path]:
         where: x509.GeneralName = x509.IPAddress(ip_address(host))
     except ValueError:
         where = x509.DNSName(host)
-    role = x509.UnrecognizedExtension(x509.ObjectIdentifier(ROLE_OID), bytes([0x0C, len(ROLE)]) + ROLE.encode())
+    role = x509.UnrecognizedExtension(
+        x509.ObjectIdentifier(ROLE_OID), bytes([0x0C, len(ROLE)]) + ROLE.encode()
+    )
     no_authority = x509.BasicConstraints(ca=False, path_length=None)
     issued = [
-        certificate("weldgate trial authority", authority, authority, [x509.BasicConstraints(ca=True, path_length=0)]),
-        certificate("weldgate station", server, authority, [no_authority, x509.SubjectAlternativeName([where])]),
+        certificate(
+            "weldgate trial authority", authority, authority, [x509.BasicConstraints(ca=True, path_length=0)]
+        ),
+        certificate(
+            "weldgate station", server, authority, [no_authority, x509.SubjectAlternativeName([where])]
+        ),
         certificate("weldgate PLC", client, authority, [no_authority, role]),
     ]
     secrets = [
-        key.private_bytes(serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption())
+        key.private_bytes(
+            serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+        )
         for key in (server, client)
     ]
     for path, data in zip(paths, (issued[0], issued[1], secrets[0], issued[2], secrets[1]), strict=True):

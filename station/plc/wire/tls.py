@@ -25,10 +25,14 @@ def _loaded(context: ssl.SSLContext, settings: TlsSettings) -> ssl.SSLContext:
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     for path in (settings.certificate_path, settings.key_path, settings.ca_path):
         if not path.is_file():
-            raise SettingsError(f"{path}: no such file; name PEM files under [plc.tls], or make some with weldgate certificates")
+            raise SettingsError(
+                f"{path}: no such file; name PEM files under [plc.tls], or make some with weldgate certificates"
+            )
     try:
         context.load_cert_chain(settings.certificate_path, settings.key_path)
         context.load_verify_locations(settings.ca_path)
     except (ssl.SSLError, OSError) as error:
-        raise SettingsError(f"{settings.certificate_path} and the files beside it: no usable certificates ({error})") from None
+        raise SettingsError(
+            f"{settings.certificate_path} and the files beside it: no usable certificates ({error})"
+        ) from None
     return context

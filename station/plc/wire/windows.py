@@ -5,7 +5,15 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from station.errors import LineError
-from station.plc.map.registers import BY_NAME, COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS, Status, reordered
+from station.plc.map.registers import (
+    BY_NAME,
+    COMMAND_START,
+    COMMAND_WORDS,
+    STATUS_START,
+    STATUS_WORDS,
+    Status,
+    reordered,
+)
 from station.plc.wire.access import Network
 from station.plc.wire.modbus import ModbusClient, ModbusServer
 from station.plc.wire.tls import Tls, client_context, server_context
@@ -91,7 +99,9 @@ class ServerWire:
 
     async def publish(self, words: list[int]) -> None:
         """The whole window in one call."""
-        await self._server.write(STATUS_START, reordered(STATUS_START, words) if self._low_word_first else words)
+        await self._server.write(
+            STATUS_START, reordered(STATUS_START, words) if self._low_word_first else words
+        )
 
 
 class ClientWire:

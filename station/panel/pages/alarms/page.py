@@ -41,7 +41,11 @@ class AlarmsPage(FollowingPage):
         self.acknowledge.clicked.connect(self._acknowledge)
         self._problem = label("", "problem")
         row = QHBoxLayout()
-        row.addWidget(label(translate("alarms", "Choose an alarm to acknowledge it; who is logged in is noted."), "quiet"))
+        row.addWidget(
+            label(
+                translate("alarms", "Choose an alarm to acknowledge it; who is logged in is noted."), "quiet"
+            )
+        )
         row.addWidget(self._problem)
         row.addStretch(1)
         row.addWidget(self.acknowledge)
@@ -54,7 +58,9 @@ class AlarmsPage(FollowingPage):
     def refresh(self) -> None:
         """Read the journal again."""
         try:
-            told = entries(self._session.received.folder, (Kind.ALARM, Kind.ALARM_OVER, Kind.ALARM_SEEN), limit=3 * SHOWN)
+            told = entries(
+                self._session.received.folder, (Kind.ALARM, Kind.ALARM_OVER, Kind.ALARM_SEEN), limit=3 * SHOWN
+            )
         except RecordError as error:
             self._problem.setText(str(error))
             return

@@ -4,7 +4,15 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from PySide6.QtCore import QDateTime, QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QDateTimeEdit, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDateTimeEdit,
+    QHBoxLayout,
+    QLineEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from station.archive.reader import Row
 from station.defects import Reason
@@ -27,7 +35,9 @@ class SearchFields(QWidget):
         self.serial = QLineEdit()
         self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
         self.serial.setMinimumWidth(120)
-        self.since, self.verdict, self.kind, self.segment, self.score, self.state = (Choice() for _ in range(6))
+        self.since, self.verdict, self.kind, self.segment, self.score, self.state = (
+            Choice() for _ in range(6)
+        )
         self._boxes = (self.since, self.verdict, self.kind, self.segment, self.score, self.state)
         self._fill()
         self.look_up = QPushButton(translate("history", "Search"))
@@ -36,7 +46,10 @@ class SearchFields(QWidget):
         self._between = QWidget()
         row = QHBoxLayout(self._between)
         row.setContentsMargins(0, 0, 0, 0)
-        for text, edit in ((translate("history", "from"), self.begin), (translate("history", "to"), self.end)):
+        for text, edit in (
+            (translate("history", "from"), self.begin),
+            (translate("history", "to"), self.end),
+        ):
             edit.setDisplayFormat("dd.MM.yyyy HH:mm")
             edit.setCalendarPopup(True)
             edit.editingFinished.connect(self.asked)
@@ -72,14 +85,29 @@ class SearchFields(QWidget):
         for text, hours in times:
             self.since.addItem(text, hours)
         choices: tuple[tuple[QComboBox, str, list[tuple[str, object]]], ...] = (
-            (self.verdict, translate("history", "verdict"), [(data(verdict), str(verdict)) for verdict in Verdict]),
+            (
+                self.verdict,
+                translate("history", "verdict"),
+                [(data(verdict), str(verdict)) for verdict in Verdict],
+            ),
             (self.kind, translate("history", "reason"), [(data(reason), str(reason)) for reason in Reason]),
-            (self.segment, translate("history", "segment"), [(f"{segment} {n}", n) for n in range(1, SEGMENTS + 1)]),
-            (self.score, translate("history", "score"), [(f"≥ {score:g}", score) for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)]),
+            (
+                self.segment,
+                translate("history", "segment"),
+                [(f"{segment} {n}", n) for n in range(1, SEGMENTS + 1)],
+            ),
+            (
+                self.score,
+                translate("history", "score"),
+                [(f"≥ {score:g}", score) for score in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)],
+            ),
             (
                 self.state,
                 translate("history", "review"),
-                [(translate("history", "to be confirmed"), TO_CONFIRM), *((data(state), str(state)) for state in State)],
+                [
+                    (translate("history", "to be confirmed"), TO_CONFIRM),
+                    *((data(state), str(state)) for state in State),
+                ],
             ),
         )
         for box, every, values in choices:

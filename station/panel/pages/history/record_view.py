@@ -85,7 +85,10 @@ class RecordView(QWidget):
         """No record, or one that cannot be read."""
         self.record, self.strip_shown, self.marks = None, False, {}
         self.problem.setText(why)
-        self.weld.show_weld(None, translate("history", "the record cannot be read") if why else translate("history", "no part"))
+        self.weld.show_weld(
+            None,
+            translate("history", "the record cannot be read") if why else translate("history", "no part"),
+        )
         self.strip.show_strip(None, (), ())
         self.strip.show_marks({})
         self.findings.fill([])
@@ -124,7 +127,12 @@ class RecordView(QWidget):
             self.weld.show_weld(drawn)
         except (ImageError, LocateError) as error:
             strip = None
-            self.weld.show_weld(None, data(str(error)) if len(str(error)) < 60 else translate("history", "its picture cannot be read"))
+            self.weld.show_weld(
+                None,
+                data(str(error))
+                if len(str(error)) < 60
+                else translate("history", "its picture cannot be read"),
+            )
         self.strip.show_strip(strip, nok_scores(record), nok)
         self.strip.show_marks({})
         self.strip_shown = strip is not None
@@ -132,7 +140,8 @@ class RecordView(QWidget):
         self.findings.fill(
             [
                 (
-                    data(f.kind) + (f" ({tolerated})" if nok and not any(nok[s] for s in _segments(f)) else ""),
+                    data(f.kind)
+                    + (f" ({tolerated})" if nok and not any(nok[s] for s in _segments(f)) else ""),
                     f"{f.start_deg:.1f}",
                     f"{f.end_deg:.1f}",
                     f"{f.length_mm:.2f}",
@@ -146,7 +155,11 @@ class RecordView(QWidget):
         reason = "" if inspection.reason is None else f": {data(inspection.reason)}"
         ring, q, t, p = inspection.ring, inspection.quality, inspection.timing, record.provenance
         steps = (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms)
-        shown = {True: translate("history", "yes"), False: translate("history", "no"), None: translate("history", "unknown")}
+        shown = {
+            True: translate("history", "yes"),
+            False: translate("history", "no"),
+            None: translate("history", "unknown"),
+        }
         self.facts.set(
             verdict=f"{data(record.verdict)}{reason}",
             serial=record.serial or "–",

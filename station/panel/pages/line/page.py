@@ -45,7 +45,9 @@ class LinePage(Page):
         self._place: tuple[str, int] = ("", 0)
         self._lamps: dict[tuple[str, IntFlag], QLabel] = {}
         """By register: bits of CONTROL and STATUS are equal numbers."""
-        self.registers = Table((translate("line", "register"), translate("line", "name"), translate("line", "value")), stretch=2)
+        self.registers = Table(
+            (translate("line", "register"), translate("line", "name"), translate("line", "value")), stretch=2
+        )
         self.edges = Table(
             (
                 translate("line", "time"),
@@ -57,7 +59,9 @@ class LinePage(Page):
             stretch=4,
         )
         self._words = label("", "quiet", wrap=True)
-        self._stale = label(translate("line", "no word from the engine: the registers are as they last were"), "problem")
+        self._stale = label(
+            translate("line", "no word from the engine: the registers are as they last were"), "problem"
+        )
         self._stale.hide()
         self._problem = label("", "problem")
         self.service = QPushButton(translate("line", "Service mode"))
@@ -87,7 +91,10 @@ class LinePage(Page):
         grid = QGridLayout(bits)
         grid.setSpacing(4)
         here = translate("line", "station")
-        both: tuple[tuple[str, str, type[IntFlag]], ...] = (("CONTROL", f"PLC → {here}", Control), ("STATUS", f"{here} → PLC", Status))
+        both: tuple[tuple[str, str, type[IntFlag]], ...] = (
+            ("CONTROL", f"PLC → {here}", Control),
+            ("STATUS", f"{here} → PLC", Status),
+        )
         for row, (register, title, flags) in enumerate(both):
             grid.addWidget(label(title, "quiet"), row * 3, 0, 1, 8)
             for index, flag in enumerate(flags):
@@ -97,7 +104,12 @@ class LinePage(Page):
                 self._lamps[register, flag] = lamp
                 grid.addWidget(lamp, row * 3 + 1 + index // 8, index % 8)
         hand = QHBoxLayout()
-        for widget in (self.service, label(translate("line", "set one bit of STATUS by hand:"), "quiet"), self.bits, self._problem):
+        for widget in (
+            self.service,
+            label(translate("line", "set one bit of STATUS by hand:"), "quiet"),
+            self.bits,
+            self._problem,
+        ):
             hand.addWidget(widget)
         hand.addStretch(1)
         below = QSplitter(Qt.Orientation.Horizontal)
@@ -113,11 +125,17 @@ class LinePage(Page):
 
     def _on_status(self) -> None:
         status, there = self._session.received.status, self._session.received.engine_there
-        if status is None or not status.status_words or not (self.isVisible() or self.registers.rowCount() == 0):
+        if (
+            status is None
+            or not status.status_words
+            or not (self.isVisible() or self.registers.rowCount() == 0)
+        ):
             return
         self._stale.setVisible(not there)
         self.registers.setEnabled(there)
-        values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(STATUS_START, list(status.status_words))
+        values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(
+            STATUS_START, list(status.status_words)
+        )
         held = {"CONTROL": status.line.control, "STATUS": status.line.status}
         c = theme.colors()
         for (register, flag), lamp in self._lamps.items():
@@ -126,15 +144,22 @@ class LinePage(Page):
             if lamp.text() != said:
                 lamp.setText(said)
                 on_style = f"background: {c.accent}; color: {c.background}; font-weight: 700;"
-                lamp.setStyleSheet("border-radius: 4px; font-size: 12px; " + (on_style if on else f"background: {c.raised};"))
+                lamp.setStyleSheet(
+                    "border-radius: 4px; font-size: 12px; " + (on_style if on else f"background: {c.raised};")
+                )
         self.registers.fill([(str(r.address), r.name, _shown(r.name, values[r.name])) for r in MAP])
         words = status.status_words
-        for_u32, for_f32 = (words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32"))
+        for_u32, for_f32 = (
+            words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32")
+        )
         test_f32 = struct.unpack(">f", struct.pack(">HH", *for_f32))[0]
         if self._session.received.settings.plc.low_word_first:
             for_u32, for_f32 = for_u32[::-1], for_f32[::-1]
         self._words.setText(
-            translate("line", "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:")
+            translate(
+                "line",
+                "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:",
+            )
             + f" {for_u32[0]:04X} {for_u32[1]:04X} · {for_f32[0]:04X} {for_f32[1]:04X} ({test_f32:.3f}). "
             + translate("line", "If the PLC reads 16#56781234, exchange its words or set plc.low_word_first.")
         )
@@ -144,10 +169,16 @@ class LinePage(Page):
         self.service.setChecked(session.service.held is not None)
         self.service.setEnabled(session.account.may(Level.SETTER))
         self.bits.setEnabled(session.service.held is not None and session.account.may(Level.SETTER))
-        hint = "" if session.account.may(Level.SETTER) else translate("line", "log in as setter first (page Setup)")
+        hint = (
+            ""
+            if session.account.may(Level.SETTER)
+            else translate("line", "log in as setter first (page Setup)")
+        )
         self._problem.setText(hint)
         with QSignalBlocker(self.bits):
-            self.bits.setCurrentIndex(max(0, self.bits.findData(0 if session.service.held is None else session.service.held.bit)))
+            self.bits.setCurrentIndex(
+                max(0, self.bits.findData(0 if session.service.held is None else session.service.held.bit))
+            )
 
     def _toggle_service(self) -> None:
         session = self._session
@@ -180,7 +211,10 @@ class LinePage(Page):
         if not new:
             return
         self._edges.extend(new)
-        rows = [(_time(e.time), data(e.by), e.name, str(e.value), data(e.note) if e.note else "") for e in reversed(self._edges)]
+        rows = [
+            (_time(e.time), data(e.by), e.name, str(e.value), data(e.note) if e.note else "")
+            for e in reversed(self._edges)
+        ]
         self.edges.fill(rows)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name

@@ -4,7 +4,15 @@ import time
 
 from PySide6.QtCore import QTimer
 from PySide6.QtGui import QHideEvent, QImage, QResizeEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QGridLayout,
+    QHBoxLayout,
+    QPushButton,
+    QSizePolicy,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from station.channel.events import PartEvent
 from station.channel.requests import Answer, TakeTestImage
@@ -58,7 +66,9 @@ class LivePage(Page):
         self._nok_strip.touched.connect(lambda _: self._open_pinned())
         self.scores.touched.connect(lambda: self._angles.setCurrentWidget(self.clock))
         self.test = QPushButton(translate("live", "Test picture"))
-        self.test.setToolTip(translate("live", "Take a picture of what lies there now and judge it; the PLC is told nothing"))
+        self.test.setToolTip(
+            translate("live", "Take a picture of what lies there now and judge it; the PLC is told nothing")
+        )
         self.test.clicked.connect(self._ask_test)
         self.hold = QPushButton(translate("live", "Hold"))
         self.hold.setToolTip(translate("live", "The picture stays; lamp and counters go on"))
@@ -125,7 +135,9 @@ class LivePage(Page):
             return
         c = status.line.counts
         share = f"{c.ok / c.total:.1%}" if c.total else "–"
-        self.facts.set(parts=c.total, ok=c.ok, nok=c.nok, error=c.error, recipe=status.recipe, **{"yield": share})
+        self.facts.set(
+            parts=c.total, ok=c.ok, nok=c.nok, error=c.error, recipe=status.recipe, **{"yield": share}
+        )
         self.age()
 
     def _on_part(self) -> None:
@@ -137,12 +149,20 @@ class LivePage(Page):
         steps = (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms, event.record_ms, event.publish_ms)
         drifting = event.drift is not None and event.drift.alarm
         known = translate("live", "known")
-        picture = translate("live", "UNLIKE TRAINING") if event.novel else translate("live", "DRIFTING") if drifting else known
+        picture = (
+            translate("live", "UNLIKE TRAINING")
+            if event.novel
+            else translate("live", "DRIFTING")
+            if drifting
+            else known
+        )
         cycle = f"{sum(ms for ms in steps if ms is not None):.0f} ms"
         self.facts.set(part=record.inspection_id, serial=record.serial or "–", picture=picture, cycle=cycle)
         counts = [0] * SEGMENTS
         for part in self._session.received.parts:
-            for index, nok in enumerate(part.record.inspection.nok if part.record.purpose is Purpose.PART else ()):
+            for index, nok in enumerate(
+                part.record.inspection.nok if part.record.purpose is Purpose.PART else ()
+            ):
                 counts[index] += nok
         self.clock.show_counts(tuple(counts))
         if self._angles.currentWidget() is self.scores:
@@ -165,7 +185,9 @@ class LivePage(Page):
                 self._nok_shown = shown
                 self._nok_text.setText(_caption(part))
                 self._nok_strip.show_strip(
-                    None if preview is None else strip_image(preview), nok_scores(part.record), part.record.inspection.nok
+                    None if preview is None else strip_image(preview),
+                    nok_scores(part.record),
+                    part.record.inspection.nok,
                 )
 
     def _show_picture(self) -> None:
@@ -216,16 +238,26 @@ class LivePage(Page):
 
     def _on_map(self, made: tuple[int, QImage]) -> None:
         number, overlay = made
-        if self._nok_shown is not None and self._nok_shown[0] == number:  # or another part has been pinned since
+        if (
+            self._nok_shown is not None and self._nok_shown[0] == number
+        ):  # or another part has been pinned since
             self._nok_strip.show_map(overlay)
 
     def _show_scores(self, segment: int) -> None:
         """Of the last parts, oldest first."""
         self._segment = segment
-        seen = [p for p in self._session.received.parts if p.record.purpose is Purpose.PART and p.record.inspection.scores]
+        seen = [
+            p
+            for p in self._session.received.parts
+            if p.record.purpose is Purpose.PART and p.record.inspection.scores
+        ]
         scores = [p.record.inspection.scores[segment].nok for p in seen]
         parts, name = translate("live", "parts"), translate("live", "segment")
-        self.scores.show_scores(scores, [p.record.inspection.nok[segment] for p in seen], f"{name} {segment + 1} · {len(seen)} {parts}")
+        self.scores.show_scores(
+            scores,
+            [p.record.inspection.nok[segment] for p in seen],
+            f"{name} {segment + 1} · {len(seen)} {parts}",
+        )
         self._angles.setCurrentWidget(self.scores)
 
     def _open_pinned(self) -> None:

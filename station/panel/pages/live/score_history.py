@@ -45,7 +45,11 @@ class ScoreHistory(QWidget):
             painter.setPen(QPen(QColor(c.line), 1))
             painter.drawLine(QPointF(field.left(), y), QPointF(field.right(), y))
             painter.setPen(QColor(c.quiet))
-            painter.drawText(QRectF(0, y - 8, 28, 16), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), f"{level:.1f}")
+            painter.drawText(
+                QRectF(0, y - 8, 28, 16),
+                int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter),
+                f"{level:.1f}",
+            )
         painter.setPen(Qt.PenStyle.NoPen)
         step = field.width() / max(1, len(self.scores) - 1)
         for index, (score, nok) in enumerate(zip(self.scores, self._nok, strict=True)):
@@ -53,4 +57,8 @@ class ScoreHistory(QWidget):
             painter.setBrush(QColor(c.bad if nok else c.quiet))
             painter.drawEllipse(at, 4.5 if nok else 2.5, 4.5 if nok else 2.5)
         painter.setPen(QColor(c.text))
-        painter.drawText(QRectF(0, self.height() - FOOT_PX, self.width(), FOOT_PX), Qt.AlignmentFlag.AlignCenter, self._foot)
+        painter.drawText(
+            QRectF(0, self.height() - FOOT_PX, self.width(), FOOT_PX),
+            Qt.AlignmentFlag.AlignCenter,
+            self._foot,
+        )

@@ -46,14 +46,20 @@ class VerdictLamp(QWidget):
         for text, top, share, size in ((self._lamp.symbol, 0.02, 0.34, 0.32), (word, 0.35, 0.32, 0.31)):
             font.setPixelSize(max(12, int(min(height * size, width * 1.15 / max(4, len(text))))))
             painter.setFont(font)
-            painter.drawText(QRectF(0, height * top, width, height * share), Qt.AlignmentFlag.AlignCenter, text)
+            painter.drawText(
+                QRectF(0, height * top, width, height * share), Qt.AlignmentFlag.AlignCenter, text
+            )
         font.setBold(False)
         font.setPixelSize(16)
         painter.setFont(font)
         flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-        detail = ": ".join(text for text in (data(self._lamp.detail) if self._lamp.detail else "", self._lamp.more) if text)
+        detail = ": ".join(
+            text for text in (data(self._lamp.detail) if self._lamp.detail else "", self._lamp.more) if text
+        )
         painter.drawText(QRectF(10, height * 0.67, width - 20, height * 0.2), int(flags), detail)
-        painter.drawText(QRectF(10, height * 0.85, width - 20, height * 0.13), Qt.AlignmentFlag.AlignCenter, self._foot)
+        painter.drawText(
+            QRectF(10, height * 0.85, width - 20, height * 0.13), Qt.AlignmentFlag.AlignCenter, self._foot
+        )
 
 
 def _mix(over: str, under: str, strength: float) -> QColor:

@@ -78,7 +78,10 @@ class ReplayPage(Page):
             self.recipe.addItem(f"{word} {number}", number)
         self.scale = NumberField(1.0, 200.0, "µm/px")
         self.scale.set(self._session.received.settings.weld.um_per_px)
-        self.judge, self.report = QPushButton(translate("replay", "Judge")), QPushButton(translate("replay", "Report…"))
+        self.judge, self.report = (
+            QPushButton(translate("replay", "Judge")),
+            QPushButton(translate("replay", "Report…")),
+        )
         self.only_flips = QPushButton(translate("replay", "Flipped verdicts only"))
         self.only_flips.setCheckable(True)
         top, second = QHBoxLayout(), QHBoxLayout()
@@ -89,7 +92,11 @@ class ReplayPage(Page):
         second.addStretch(1)
         for button in (self.judge, self.only_flips, self.report):
             second.addWidget(button)
-        self.said, self._problem, self._work = label("", "title", wrap=True), label("", "problem", wrap=True), WorkBar()
+        self.said, self._problem, self._work = (
+            label("", "title", wrap=True),
+            label("", "problem", wrap=True),
+            WorkBar(),
+        )
         heads = (
             translate("replay", "image"),
             translate("replay", "on the line"),
@@ -118,7 +125,11 @@ class ReplayPage(Page):
         rows.addWidget(split, 1)
 
     def _on_user(self) -> None:
-        hint = "" if self._session.account.may(Level.OPERATOR) else translate("replay", "log in first (page Setup)")
+        hint = (
+            ""
+            if self._session.account.may(Level.OPERATOR)
+            else translate("replay", "log in first (page Setup)")
+        )
         for button in (self.judge, self.choose, self.report):
             button.setEnabled(not hint)
             button.setToolTip(hint)
@@ -265,7 +276,9 @@ def _judged(
     found = sources([path])
     if count is not None:
         found = found[-count:]
-    one = settings.model_copy(update={"model": settings.model.model_copy(update={"threads": 1, "reference_path": None})})
+    one = settings.model_copy(
+        update={"model": settings.model.model_copy(update={"threads": 1, "reference_path": None})}
+    )
     judge, factor = load_inspector(one), um_per_px / settings.weld.um_per_px
     results: dict[str, Replayed] = {}
     problems: list[str] = []

@@ -48,7 +48,9 @@ class CameraPage(Page):
         box = QWidget()
         form = QGridLayout(box)
         form.setVerticalSpacing(2)
-        for place, (name, field) in enumerate(((translate("camera", "exposure"), self.exposure), (translate("camera", "gain"), self.gain))):
+        for place, (name, field) in enumerate(
+            ((translate("camera", "exposure"), self.exposure), (translate("camera", "gain"), self.gain))
+        ):
             form.addWidget(label(name), place, 0)
             form.addWidget(field, place, 1)
         form.addWidget(self.reason, 2, 0, 1, 2)
@@ -120,7 +122,9 @@ class CameraPage(Page):
         well = changed and self.exposure.value is not None and self.gain.value is not None
         allowed = session.account.may(Level.SETTER) and not session.change.waiting
         self.save.setEnabled(well and allowed and len(self.reason.text().strip()) >= MIN_REASON)
-        self.problem.setText("" if session.account.may(Level.SETTER) else translate("camera", "log in as setter first"))
+        self.problem.setText(
+            "" if session.account.may(Level.SETTER) else translate("camera", "log in as setter first")
+        )
         if looking and self.exposure.value is not None and self.gain.value is not None:
             session.service.adjust(self.exposure.value, self.gain.value)
 

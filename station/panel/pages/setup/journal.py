@@ -58,7 +58,9 @@ class JournalPage(FollowingPage):
             return
         rows = []
         for e in found:
-            before, after = ("", "") if e.kind is Kind.USER else (e.before, e.after)  # a PIN's hash is nobody's business
+            before, after = (
+                ("", "") if e.kind is Kind.USER else (e.before, e.after)
+            )  # a PIN's hash is nobody's business
             if e.kind is Kind.USER:
                 after = translate("journal", "saved") if e.after else translate("journal", "removed")
             when = datetime.fromisoformat(e.at).astimezone()

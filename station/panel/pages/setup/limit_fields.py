@@ -28,7 +28,11 @@ def limits_in_use(settings: Settings) -> dict[str, float]:
     used = in_use(Classifier(model.path, 1).card.thresholds, model.limits, model.segment_thresholds).kinds
     values = {THRESHOLD.format(limit.kind.name): limit.threshold for limit in used}
     values |= {MIN_MM.format(limit.kind.name): limit.min_mm for limit in used}
-    return values | {key: float(getattr(settings.quality, key)) for key, (section, _, _) in FIELDS.items() if section == "quality"}
+    return values | {
+        key: float(getattr(settings.quality, key))
+        for key, (section, _, _) in FIELDS.items()
+        if section == "quality"
+    }
 
 
 def thresholds_of(values: Values) -> Thresholds:

@@ -2,7 +2,15 @@
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QShowEvent
-from PySide6.QtWidgets import QFormLayout, QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QFormLayout,
+    QGridLayout,
+    QHBoxLayout,
+    QLineEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from station.channel.requests import Answer
 from station.errors import RecordError
@@ -25,7 +33,10 @@ class LoginPage(Page):
         self.name.setMinimumWidth(260)
         self.pin.setEchoMode(QLineEdit.EchoMode.Password)
         self.pin.setMaxLength(12)
-        self.log_in, self.log_out = QPushButton(translate("login", "Log in")), QPushButton(translate("login", "Log out"))
+        self.log_in, self.log_out = (
+            QPushButton(translate("login", "Log in")),
+            QPushButton(translate("login", "Log out")),
+        )
         self.log_in.clicked.connect(self._log_in)
         self.pin.returnPressed.connect(self._log_in)
         self.log_out.clicked.connect(session.account.log_out)
@@ -78,18 +89,29 @@ class LoginPage(Page):
         self.pin.clear()
         self.log_out.setEnabled(user is not None)
         self.problem.setText("")
-        self._who.setText(translate("login", "nobody is logged in") if user is None else f"{user.name} · {data(user.level.name.lower())}")
+        self._who.setText(
+            translate("login", "nobody is logged in")
+            if user is None
+            else f"{user.name} · {data(user.level.name.lower())}"
+        )
         try:
             known = users(self._session.received.folder)
         except RecordError as error:
             self.problem.setText(str(error))
             return
         view = login_view(known, self.name.currentText())
-        self.log_in.setText(translate("login", "Become administrator") if view.first else translate("login", "Log in"))
+        self.log_in.setText(
+            translate("login", "Become administrator") if view.first else translate("login", "Log in")
+        )
         self._hint.setText(
-            translate("login", "Nobody is known yet: whoever gives a name and a PIN of at least 4 digits becomes administrator.")
+            translate(
+                "login",
+                "Nobody is known yet: whoever gives a name and a PIN of at least 4 digits becomes administrator.",
+            )
             if view.first
-            else translate("login", "Watching needs no login, doing does. Five wrong PINs lock a name for a minute.")
+            else translate(
+                "login", "Watching needs no login, doing does. Five wrong PINs lock a name for a minute."
+            )
         )
         self.name.clear()
         self.name.addItems(view.names)

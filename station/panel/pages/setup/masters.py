@@ -50,7 +50,13 @@ class MastersPage(FollowingPage):
         self.problem = label("", "problem", wrap=True)
         row = QHBoxLayout()
         row.addWidget(
-            label(translate("masters", "Put the master in, choose it, judge it. The PLC can ask for it too (GOLDEN_CHECK)."), "quiet")
+            label(
+                translate(
+                    "masters",
+                    "Put the master in, choose it, judge it. The PLC can ask for it too (GOLDEN_CHECK).",
+                ),
+                "quiet",
+            )
         )
         row.addStretch(1)
         row.addWidget(self.check)
@@ -66,7 +72,9 @@ class MastersPage(FollowingPage):
         """Read the checks again."""
         golden = self._session.received.settings.golden
         try:
-            rows = find(self._session.received.folder, Wanted(purpose=Purpose.GOLDEN, newest_first=True, limit=LOG))
+            rows = find(
+                self._session.received.folder, Wanted(purpose=Purpose.GOLDEN, newest_first=True, limit=LOG)
+            )
         except RecordError:
             rows = []  # no archive yet
         states = {
@@ -76,14 +84,26 @@ class MastersPage(FollowingPage):
             MasterState.UNKNOWN: "–",
         }
         known = master_rows(golden.masters, golden.due_h, rows, datetime.now(UTC))
-        shown = [(m.serial, m.expected, m.found or "–", _local(m.checked), _local(m.due), states[m.state]) for m in known]
+        shown = [
+            (m.serial, m.expected, m.found or "–", _local(m.checked), _local(m.due), states[m.state])
+            for m in known
+        ]
         self.masters.fill(shown)
         times = (datetime.fromisoformat(row.grabbed_at).astimezone() for row in rows)
-        self.log.fill([(f"{at:%d.%m.%Y %H:%M:%S}", r.serial, _judged(r), str(r.inspection_id)) for at, r in zip(times, rows, strict=True)])
+        self.log.fill(
+            [
+                (f"{at:%d.%m.%Y %H:%M:%S}", r.serial, _judged(r), str(r.inspection_id))
+                for at, r in zip(times, rows, strict=True)
+            ]
+        )
         self.check.setEnabled(self._session.account.may(Level.SETTER) and bool(shown))
         none = translate("masters", "no masters are named; write [golden.masters] into the settings file")
         self.problem.setText(
-            none if not shown else "" if self._session.account.may(Level.SETTER) else translate("masters", "log in as setter to judge")
+            none
+            if not shown
+            else ""
+            if self._session.account.may(Level.SETTER)
+            else translate("masters", "log in as setter to judge")
         )
 
     def _check(self) -> None:

@@ -21,7 +21,11 @@ class SetupPage(Page):
         super().__init__()
         self.tabs = QTabWidget()
         self.login, self.camera, self.recipe = LoginPage(session), CameraPage(session), RecipePage(session)
-        self.masters, self.people, self.journal = MastersPage(session), PeoplePage(session), JournalPage(session)
+        self.masters, self.people, self.journal = (
+            MastersPage(session),
+            PeoplePage(session),
+            JournalPage(session),
+        )
         for page, name in (
             (self.login, translate("setup", "Login")),
             (self.camera, translate("setup", "Camera")),
@@ -36,7 +40,9 @@ class SetupPage(Page):
 
     def show_tab(self, page: QWidget) -> None:
         """One of the pages above."""
-        self.tabs.setCurrentIndex((self.login, self.camera, self.recipe, self.masters, self.people, self.journal).index(page))
+        self.tabs.setCurrentIndex(
+            (self.login, self.camera, self.recipe, self.masters, self.people, self.journal).index(page)
+        )
 
     def close_page(self) -> None:
         """All tabs."""

@@ -22,7 +22,10 @@ class PeoplePage(Page):
         self.pin.setEchoMode(QLineEdit.EchoMode.Password)
         for level in Level:
             self.level.addItem(data(level.name.lower()), level)
-        self.save, self.remove = QPushButton(translate("people", "Save")), QPushButton(translate("people", "Remove"))
+        self.save, self.remove = (
+            QPushButton(translate("people", "Save")),
+            QPushButton(translate("people", "Remove")),
+        )
         self.problem = label("", "problem", wrap=True)
         box = QWidget()
         form = QFormLayout(box)
@@ -63,7 +66,9 @@ class PeoplePage(Page):
         for widget in (self.save, self.remove, self.name, self.level, self.pin):
             widget.setEnabled(admin)
         try:
-            self.table.fill([(user.name, data(user.level.name.lower())) for user in users(self._session.received.folder)])
+            self.table.fill(
+                [(user.name, data(user.level.name.lower())) for user in users(self._session.received.folder)]
+            )
             self.problem.setText("" if admin else translate("people", "log in as administrator first"))
         except RecordError as error:
             self.problem.setText(str(error))

@@ -11,7 +11,15 @@ from station.errors import ModelError, SettingsError
 from station.journal.users import Level
 from station.panel.look.words import data, translate
 from station.panel.pages.page import Page
-from station.panel.pages.setup.limit_fields import FIELDS, MIN_MM, THRESHOLD, limits_in_use, place_of, quality_of, thresholds_of
+from station.panel.pages.setup.limit_fields import (
+    FIELDS,
+    MIN_MM,
+    THRESHOLD,
+    limits_in_use,
+    place_of,
+    quality_of,
+    thresholds_of,
+)
 from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState, scored_records
 from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, Table, label, titled
@@ -33,7 +41,10 @@ class RecipePage(Page):
         word = translate("recipe", "recipe")
         for number in sorted({1, *session.received.settings.recipes}):
             self.recipe.addItem(f"{word} {number}", number)
-        threshold, length = translate("recipe", "{kind}: threshold"), translate("recipe", "{kind}: minimum length (mm)")
+        threshold, length = (
+            translate("recipe", "{kind}: threshold"),
+            translate("recipe", "{kind}: minimum length (mm)"),
+        )
         names = {
             **{THRESHOLD.format(kind.name): threshold.format(kind=data(kind.reason)) for kind in KINDS},
             **{MIN_MM.format(kind.name): length.format(kind=data(kind.reason)) for kind in KINDS},
@@ -55,7 +66,10 @@ class RecipePage(Page):
             translate("recipe", "score"),
         )
         self.released, self.refused = Table(heads, stretch=1), Table(heads, stretch=1)
-        self.ask, self.save = QPushButton(translate("recipe", "What if?")), QPushButton(translate("recipe", "Save"))
+        self.ask, self.save = (
+            QPushButton(translate("recipe", "What if?")),
+            QPushButton(translate("recipe", "Save")),
+        )
         self.reason = QLineEdit()
         self.reason.setPlaceholderText(translate("recipe", "reason (needed)"))
         self.said, self.problem, self._work = label("", "title"), label("", "problem", wrap=True), WorkBar()
@@ -72,8 +86,12 @@ class RecipePage(Page):
         form.addWidget(self.segments, len(names) + 1, 1)
         right = QVBoxLayout()
         right.addWidget(self.said)
-        right.addWidget(titled(translate("recipe", "would be released (NOK → OK): possible escapes"), self.released), 1)
-        right.addWidget(titled(translate("recipe", "would be refused (OK → NOK): possible false calls"), self.refused), 1)
+        right.addWidget(
+            titled(translate("recipe", "would be released (NOK → OK): possible escapes"), self.released), 1
+        )
+        right.addWidget(
+            titled(translate("recipe", "would be refused (OK → NOK): possible false calls"), self.refused), 1
+        )
         below = QHBoxLayout()
         for widget, stretch in ((self.ask, 0), (self.reason, 1), (self.save, 0)):
             below.addWidget(widget, stretch)
@@ -112,7 +130,9 @@ class RecipePage(Page):
         number = int(self.recipe.currentData())
         settings = for_recipe(self._session.received.settings, number)
         try:
-            self._state.in_use = Values(number, limits_in_use(settings), dict(settings.model.segment_thresholds))
+            self._state.in_use = Values(
+                number, limits_in_use(settings), dict(settings.model.segment_thresholds)
+            )
         except (ModelError, SettingsError) as error:
             self.problem.setText(str(error))
             return
@@ -131,7 +151,11 @@ class RecipePage(Page):
         keys = FIELDS if used is None else used.limits
         numbers = {key: value for key in keys if (value := self.fields[key].value) is not None}
         segments = self.segments.value
-        return None if len(numbers) < len(keys) or segments is None else Values(int(self.recipe.currentData()), numbers, segments)
+        return (
+            None
+            if len(numbers) < len(keys) or segments is None
+            else Values(int(self.recipe.currentData()), numbers, segments)
+        )
 
     def _on_user(self) -> None:
         """What one has typed and seen is not for the next."""
@@ -155,7 +179,9 @@ class RecipePage(Page):
         changed = self._state.changed(values)
         self.ask.setEnabled(changed and not self._work.busy)
         session = self._session
-        missing = self._state.missing(values, self.reason.text(), session.account.may(Level.QUALITY), session.change.waiting)
+        missing = self._state.missing(
+            values, self.reason.text(), session.account.may(Level.QUALITY), session.change.waiting
+        )
         self.save.setEnabled(missing is Missing.NOTHING)
         hints = {
             Missing.LOGIN: translate("recipe", "log in as quality to save"),
@@ -187,16 +213,30 @@ class RecipePage(Page):
             return
         self._state.asked = values
         for table, flips in ((self.released, found.released), (self.refused, found.refused)):
-            rows = [(str(f.inspection_id), f.serial, str(f.before), str(f.after), str(f.segment), f"{f.score:.3f}") for f in flips]
+            rows = [
+                (
+                    str(f.inspection_id),
+                    f.serial,
+                    str(f.before),
+                    str(f.after),
+                    str(f.segment),
+                    f"{f.score:.3f}",
+                )
+                for f in flips
+            ]
             table.fill(rows)
         self.said.setText(
             translate("recipe", "{n} parts: {released} would be released, {refused} refused").format(
                 n=found.looked_at, released=len(found.released), refused=len(found.refused)
             )
         )
-        unknown = translate("recipe", "{n} parts that were too poor would be judged: nobody knows how").format(n=found.unknown)
+        unknown = translate(
+            "recipe", "{n} parts that were too poor would be judged: nobody knows how"
+        ).format(n=found.unknown)
         none = translate("recipe", "no part of this recipe in the archive: nobody knows what the limits do")
-        others = translate("recipe", "{n} parts of another model, or unreadable, were left out").format(n=left_out)
+        others = translate("recipe", "{n} parts of another model, or unreadable, were left out").format(
+            n=left_out
+        )
         known = [text for text, told in ((unknown, found.unknown), (others, left_out)) if told]
         self.problem.setText(none if not found.looked_at else "; ".join(known))
         self._look()
@@ -211,7 +251,13 @@ class RecipePage(Page):
             if value != before[key]:
                 new.append(Changed(place_of(key, values.recipe), value, used.limits[key]))
         if values.segments != used.segments:
-            new.append(Changed(("recipes", str(values.recipe), "model", "segment_thresholds"), values.segments, used.segments))
+            new.append(
+                Changed(
+                    ("recipes", str(values.recipe), "model", "segment_thresholds"),
+                    values.segments,
+                    used.segments,
+                )
+            )
         self._saving = True
         self.problem.setText("")
         self._forget()

@@ -71,7 +71,9 @@ Progress = Callable[[int, int], bool]
 """Called with how much is done of how much; returns False if the work was cancelled."""
 
 
-def scored_records(folder: Path, recipe: int, judge: str, progress: Progress) -> tuple[list[Record], int] | None:
+def scored_records(
+    folder: Path, recipe: int, judge: str, progress: Progress
+) -> tuple[list[Record], int] | None:
     """Return the newest records of a recipe that one model has scored, and how many were left out.
 
     `judge`: hash of the model; scores of another one say nothing. None if it was cancelled. Raises RecordError.

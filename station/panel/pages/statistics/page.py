@@ -61,12 +61,17 @@ class StatisticsPage(Page):
         for count in PARTS:
             self.how_many.addItem(f"{last} {count}", count)
         self.how_many.setCurrentIndex(1)
-        self.again, self.report = QPushButton(translate("statistics", "Read again")), QPushButton(translate("statistics", "Report…"))
+        self.again, self.report = (
+            QPushButton(translate("statistics", "Read again")),
+            QPushButton(translate("statistics", "Report…")),
+        )
         self.again.clicked.connect(self.read)
         self.report.clicked.connect(self._ask_report)
         self._work, self._problem, self._said = WorkBar(), label("", "problem"), label("", "quiet")
         self.zero = QPushButton(translate("statistics", "Counters to 0"))
-        self.zero.setToolTip(translate("statistics", "the counters of the page Live and of the PLC; noted in the journal"))
+        self.zero.setToolTip(
+            translate("statistics", "the counters of the page Live and of the PLC; noted in the journal")
+        )
         self.zero.clicked.connect(self._reset)
         top = QHBoxLayout()
         for widget in (self.how_many, self.again, self.report, self.zero, self._problem, self._said):
@@ -88,7 +93,9 @@ class StatisticsPage(Page):
         grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 6, 1, 3)
         grid.addWidget(self.reasons, 0, 9, 1, 3)
         t = self.trends
-        for index, chart in enumerate((t["worst"], t["mean_dn"], t["sharpness"], self.cycle, t["saturated"], t["novelty"])):
+        for index, chart in enumerate(
+            (t["worst"], t["mean_dn"], t["sharpness"], self.cycle, t["saturated"], t["novelty"])
+        ):
             row, column = divmod(index, 3)
             grid.addWidget(chart, 1 + row, 4 * column, 1, 4)
         for column in range(12):
@@ -101,7 +108,11 @@ class StatisticsPage(Page):
         rows.addLayout(grid, 1)
 
     def _on_user(self) -> None:
-        hint = "" if self._session.account.may(Level.OPERATOR) else translate("statistics", "log in first (page Setup)")
+        hint = (
+            ""
+            if self._session.account.may(Level.OPERATOR)
+            else translate("statistics", "log in first (page Setup)")
+        )
         self.report.setEnabled(not hint)
         self.report.setToolTip(hint)
         self.zero.setEnabled(self._session.account.may(Level.SETTER))
@@ -128,7 +139,12 @@ class StatisticsPage(Page):
     def _show(self, summary: Summary) -> None:
         self.summary = summary
         self._problem.setText("" if summary.points else translate("statistics", "no parts yet"))
-        self.groups.fill([(g.shift, str(g.recipe), str(g.ok), str(g.nok), str(g.error), f"{g.yield_share:.1%}") for g in summary.groups])
+        self.groups.fill(
+            [
+                (g.shift, str(g.recipe), str(g.ok), str(g.nok), str(g.error), f"{g.yield_share:.1%}")
+                for g in summary.groups
+            ]
+        )
         self.clock.show_counts(summary.segments)
         self.reasons.show_bars([(data(name), count) for name, count in summary.reasons[:5]])
         bad = [p.verdict is not Verdict.OK for p in summary.points]

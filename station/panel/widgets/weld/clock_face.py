@@ -41,7 +41,12 @@ class ClockFace(QWidget):
             angle = (index + 0.5) * SEGMENT_DEG * pi / 180
             for text, radius, color, size in (
                 (str(index + 1), base * 0.76, c.quiet, full * 0.1),
-                (str(count) if count else "", base + room * count / most + full * 0.09, c.bad_text, full * 0.11),
+                (
+                    str(count) if count else "",
+                    base + room * count / most + full * 0.09,
+                    c.bad_text,
+                    full * 0.11,
+                ),
             ):
                 font.setPixelSize(max(9, int(size)))
                 painter.setFont(font)
@@ -53,7 +58,11 @@ class ClockFace(QWidget):
         font.setBold(True)
         painter.setFont(font)
         painter.setPen(QColor(c.bad_text if total else c.quiet))
-        painter.drawText(QRectF(center.x() - base, center.y() - base, 2 * base, 2 * base), Qt.AlignmentFlag.AlignCenter, str(total))
+        painter.drawText(
+            QRectF(center.x() - base, center.y() - base, 2 * base, 2 * base),
+            Qt.AlignmentFlag.AlignCenter,
+            str(total),
+        )
 
 
 def _sector(center: QPointF, inner: float, outer: float, start_deg: float) -> QPainterPath:

@@ -40,7 +40,9 @@ def judged(image: Image, inspection: Inspection) -> tuple[Drawn, QImage | None]:
     """Return picture and strip of an image (H, W) uint8. Raises LocateError if the ring is not wholly in view."""
     preview = make_preview(0, image, inspection.ring)
     small = QImage.fromData(preview.frame_jpeg)
-    return Drawn(small, preview.scale, preview.origin_px, inspection.ring, inspection.nok, inspection.findings), strip_image(preview)
+    return Drawn(
+        small, preview.scale, preview.origin_px, inspection.ring, inspection.nok, inspection.findings
+    ), strip_image(preview)
 
 
 def defect_map(settings: Settings, record: Record) -> tuple[int, QImage]:
@@ -66,7 +68,9 @@ def defect_map(settings: Settings, record: Record) -> tuple[int, QImage]:
     return record.inspection_id, image.scaledToWidth(STRIP_COLUMNS // 2)
 
 
-def small_pictures(folder: Path, rows: Sequence[Row], keep_going: Callable[[int, int], bool]) -> dict[int, QImage]:
+def small_pictures(
+    folder: Path, rows: Sequence[Row], keep_going: Callable[[int, int], bool]
+) -> dict[int, QImage]:
     """Return small images of the rows whose frames can be read, by number of the part.
 
     `keep_going` is called with how many of how many are done; the rest is left out once it returns False.

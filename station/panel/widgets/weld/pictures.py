@@ -13,7 +13,9 @@ def drawn(preview: Preview, part: PartEvent | None) -> Drawn:
     if part is None:
         return Drawn(image, preview.scale, preview.origin_px, None, (), ())
     inspection = part.record.inspection
-    return Drawn(image, preview.scale, preview.origin_px, inspection.ring, inspection.nok, inspection.findings)
+    return Drawn(
+        image, preview.scale, preview.origin_px, inspection.ring, inspection.nok, inspection.findings
+    )
 
 
 def strip_image(preview: Preview) -> QImage | None:

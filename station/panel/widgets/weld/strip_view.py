@@ -42,7 +42,9 @@ class StripView(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         """Which cell."""
-        self.touched.emit(min(SEGMENTS - 1, max(0, int(event.position().x() * SEGMENTS / max(1, self.width())))))
+        self.touched.emit(
+            min(SEGMENTS - 1, max(0, int(event.position().x() * SEGMENTS / max(1, self.width()))))
+        )
 
     def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         """Draw strip and cells."""

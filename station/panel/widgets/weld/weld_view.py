@@ -49,14 +49,20 @@ class WeldView(QWidget):
             return
         painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
         zoom = min(self.width() / d.image.width(), self.height() / d.image.height())
-        corner = QPointF((self.width() - d.image.width() * zoom) / 2, (self.height() - d.image.height() * zoom) / 2)
-        painter.drawImage(QRectF(corner.x(), corner.y(), d.image.width() * zoom, d.image.height() * zoom), d.image)
+        corner = QPointF(
+            (self.width() - d.image.width() * zoom) / 2, (self.height() - d.image.height() * zoom) / 2
+        )
+        painter.drawImage(
+            QRectF(corner.x(), corner.y(), d.image.width() * zoom, d.image.height() * zoom), d.image
+        )
         if self._note:
             painter.fillRect(self.rect(), QColor(16, 18, 20, 150))
             self._say(painter, self._note)
         elif d.ring is not None:
             k = d.scale * zoom
-            center = corner + QPointF((d.ring.center_x_px - d.origin_px[0]) * k, (d.ring.center_y_px - d.origin_px[1]) * k)
+            center = corner + QPointF(
+                (d.ring.center_x_px - d.origin_px[0]) * k, (d.ring.center_y_px - d.origin_px[1]) * k
+            )
             _overlay(painter, d, center, d.ring.radius_px * k, STRIP_ROWS / 2 * k)
         if self._caption and not self._note:
             font = painter.font()
@@ -96,7 +102,11 @@ def _overlay(painter: QPainter, d: Drawn, center: QPointF, radius: float, half: 
                 _arc(painter, center, r, index * SEGMENT_DEG, (index + 1) * SEGMENT_DEG)
         at = _at(center, inner - 20, (index + 0.5) * SEGMENT_DEG)
         painter.setPen(red if nok else QColor("#e6e8ea"))
-        painter.drawText(QRectF(at.x() - 26, at.y() - 13, 52, 26), Qt.AlignmentFlag.AlignCenter, f"✗{index + 1}" if nok else str(index + 1))
+        painter.drawText(
+            QRectF(at.x() - 26, at.y() - 13, 52, 26),
+            Qt.AlignmentFlag.AlignCenter,
+            f"✗{index + 1}" if nok else str(index + 1),
+        )
     font.setPixelSize(14)
     painter.setFont(font)
     for finding in d.findings:
@@ -107,7 +117,9 @@ def _overlay(painter: QPainter, d: Drawn, center: QPointF, radius: float, half: 
         room = painter.viewport()  # a label is moved rather than cut
         x, y = min(max(at.x(), 50), room.width() - 50), min(max(at.y(), 18), room.height() - 18)
         box = QRectF(x - 55, y - 18, 110, 36)
-        painter.fillRect(painter.boundingRect(box, int(Qt.AlignmentFlag.AlignCenter), text), QColor(16, 18, 20, 170))
+        painter.fillRect(
+            painter.boundingRect(box, int(Qt.AlignmentFlag.AlignCenter), text), QColor(16, 18, 20, 170)
+        )
         painter.setPen(QColor("#ffcf4a"))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
