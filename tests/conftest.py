@@ -4,6 +4,10 @@ import os
 
 os.environ["PYLON_CAMEMU"] = "1"
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
+for library in ("OMP", "OPENBLAS"):
+    os.environ[f"{library}_NUM_THREADS"] = (
+        "1"  # threads that spin for each other multiply the time on a machine that is busy
+    )
 
 import threading
 from collections.abc import Iterator
