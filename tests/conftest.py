@@ -1,13 +1,12 @@
-"""Guards: emulated camera and offscreen window before anything is imported; nothing left running."""
+"""Guards: emulated camera, offscreen window and single threads before anything is imported; nothing left running."""
 
 import os
 
 os.environ["PYLON_CAMEMU"] = "1"
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
-for library in ("OMP", "OPENBLAS"):
-    os.environ[f"{library}_NUM_THREADS"] = (
-        "1"  # threads that spin for each other multiply the time on a machine that is busy
-    )
+# threads that spin for each other multiply the time on a machine that is busy
+os.environ["OMP_NUM_THREADS"] = "1"
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import threading
 from collections.abc import Iterator

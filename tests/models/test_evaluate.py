@@ -14,7 +14,6 @@ from models.evaluate import evaluate_lot
 from models.export import read_network
 from models.first_day import first_day
 from models.labelled import read_lot
-from models.reference import MIN_PARTS
 from models.report import lines, summary, write_report
 from models.train import fine_tune
 from station.classify.drift import Reference, read_reference
@@ -87,15 +86,18 @@ def test_the_drift_of_one_part_from_its_own_look_is_told(lot: Path, inspector: I
 
 
 def test_the_first_day_writes_a_reference_of_good_parts_only(
-    inspector: Inspector, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    inspector: Inspector, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    parts = 8
+    monkeypatch.setattr("models.reference.MIN_PARTS", parts)
     image = cv2.imread(str(FRAMES / label_with("OK")["frame"]), cv2.IMREAD_GRAYSCALE)
-    for i in range(MIN_PARTS):
-        cv2.imwrite(str(tmp_path / f"{i:02d}.png"), np.clip(image * (0.9 + 0.01 * i), 0, 255).astype(np.uint8))
+    for i in range(parts):
+        made = np.clip(image * (0.9 + 0.025 * i), 0, 255).astype(np.uint8)
+        cv2.imwrite(str(tmp_path / f"{i:02d}.png"), made, [cv2.IMWRITE_PNG_COMPRESSION, 1])
     assert main(["first-day", str(tmp_path), "--reference", str(tmp_path / "line.json")]) == 0
     assert f"reference: {tmp_path / 'line.json'}" in capsys.readouterr().out
     reference = read_reference(tmp_path / "line.json", inspector.card.file_hash, LOOK)
-    assert reference.parts == MIN_PARTS
+    assert reference.parts == parts
     settings = ModelSettings(reference_path=tmp_path / "line.json")
     watched = Inspector(RingNetwork(RING_MODEL), inspector.classifier, WeldSettings(), QualitySettings(), settings)
     assert watched.reference == reference
@@ -126,7 +128,7 @@ def test_a_shipped_network_can_be_trained_further_on_a_lines_own_parts(tmp_path:
     folder = tmp_path / "line"
     (folder / "frames").mkdir(parents=True)
     entries = []
-    for number in range(12):
+    for number in range(8):
         item = dict(labels()[number % 4])
         name = f"{number}.png"
         (folder / "frames" / name).symlink_to(FRAMES / item["frame"])

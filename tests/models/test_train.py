@@ -20,7 +20,7 @@ from station.defects import KINDS
 from tests.conftest import MODEL
 from tests.models.made import HOLE, crops, dataset
 
-SMALL = Plan(steps=160, batch=24, average=0.95, learning_rate=0.004)
+SMALL = Plan(steps=80, batch=24, average=0.9, learning_rate=0.006)
 
 
 @pytest.fixture(scope="module")

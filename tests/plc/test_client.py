@@ -75,9 +75,10 @@ def ports() -> int:
 @pytest.mark.parametrize("forward", [True, False])
 @pytest.mark.parametrize("at_write", [3, 5, 6, 7, 8, 9, 10, 12])
 def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(
-    at_write: int, forward: bool, ports: int
+    at_write: int, forward: bool, ports: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """NOK and OK in turns: whatever is cut, an OK is only ever that of its own part, and the parts after it pass."""
+    monkeypatch.setattr("station.plc.wire.windows.RETRY_S", 0.05)
     windows = OwnWindows("127.0.0.1", ports)
     proxy = Proxy(ports, at_write, forward)
     settings = PlcSettings(mode="client", port=proxy.port, poll_ms=5, timeout_ms=200, deadline_ms=1500)
