@@ -14,8 +14,8 @@ setup: $(VENV)/.dev ## everything, into .venv
 demo: $(VENV)/.demo ## the station against a simulated line, 24 parts
 	$(BIN)/weldgate-demo
 
-test: lint ## linters, types, import contracts, tests
-	$(BIN)/python -m pytest
+test: lint ## linters, types, import contracts, tests; names the slowest
+	$(BIN)/python -m pytest -n 2 --dist loadfile --durations=25
 
 lint: $(VENV)/.dev ## ruff, mypy, import contracts
 	$(BIN)/ruff check .

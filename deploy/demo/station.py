@@ -40,6 +40,7 @@ self_test_path = {json.dumps(str(good))}
 self_test_verdict = "OK"
 [plc]
 port = {plc_port}
+deadline_ms = 3500  # a slow or busy machine needs it; the line's window is 4 s
 [archive]
 folder = {json.dumps(str(records))}
 [channel]

@@ -13,7 +13,7 @@ def test_kills_lose_nothing_that_could_have_been_seen() -> None:
         cwd=ROOT,
         capture_output=True,
         text=True,
-        timeout=100,
+        timeout=600,
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
