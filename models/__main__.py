@@ -144,9 +144,9 @@ def _say(line: str) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from models.fit import Plan
-    from models.paper_protocol import PaperPlan, train_paper
-    from models.train import train
+    from models.classifier.fit import Plan
+    from models.classifier.train import train
+    from models.paper.train import PaperPlan, train_paper
 
     cards = []
     for seed in arguments.seeds:
@@ -166,7 +166,7 @@ def _train(arguments: argparse.Namespace) -> int:
 
 
 def _fine_tune(arguments: argparse.Namespace) -> int:
-    from models.train import fine_tune
+    from models.classifier.train import fine_tune
 
     model = None if arguments.from_nothing else arguments.model
     card = fine_tune(arguments.lot, model, arguments.out, arguments.version, arguments.seed, _say)
@@ -175,9 +175,9 @@ def _fine_tune(arguments: argparse.Namespace) -> int:
 
 
 def _train_ring(arguments: argparse.Namespace) -> int:
-    from models.export import export_ring
-    from models.labelled import data_hash
-    from models.ring import RingPlan, ring_card, train_ring
+    from models.data.labelled import data_hash
+    from models.ring.export import export_ring
+    from models.ring.train import RingPlan, ring_card, train_ring
 
     plan = RingPlan(seed=arguments.seed)
     network, error_px = train_ring(arguments.lots, plan, _say)
@@ -189,17 +189,17 @@ def _train_ring(arguments: argparse.Namespace) -> int:
 
 
 def _pair_rings(arguments: argparse.Namespace) -> int:
-    from models.ring_pair import pair_rings
+    from models.ring.pair import pair_rings
 
     pair_rings(arguments.first, arguments.second, arguments.out, arguments.version)
     return 0
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:
-    from models.evaluate import evaluate_crops, evaluate_lot
-    from models.labelled import read_labels
-    from models.rendered import read_rendered
-    from models.report import lines, write_report
+    from models.data.labelled import read_labels
+    from models.data.rendered import read_rendered
+    from models.evaluation.evaluate import evaluate_crops, evaluate_lot
+    from models.evaluation.report import lines, write_report
 
     inspector = _inspector(arguments)
     rendered = [(folder / "manifest.json").is_file() and not (folder / "labels.json").is_file() for folder in arguments.data]
@@ -224,7 +224,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 
 
 def _boxes(datasets: list[Path], held: Any, inspector: "Inspector", kinds: list[int]) -> list[str]:
-    from models.detection import evaluate_boxes
+    from models.evaluation.detection import evaluate_boxes
 
     found = evaluate_boxes(datasets, held, inspector.classifier, kinds)
     kinds_text = ", ".join(f"{name} {value:.3f}" for name, value in found.by_kind.items())
@@ -236,8 +236,8 @@ def _boxes(datasets: list[Path], held: Any, inspector: "Inspector", kinds: list[
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from models.quantize import quantize
-    from models.rendered import read_rendered
+    from models.classifier.quantize import quantize
+    from models.data.rendered import read_rendered
 
     training, held, _ = read_rendered(arguments.datasets)
     f2 = quantize(arguments.model, arguments.out, training, held)
@@ -246,7 +246,7 @@ def _export(arguments: argparse.Namespace) -> int:
 
 
 def _drift(arguments: argparse.Namespace) -> int:
-    from models.drift import DRIFTS, STRENGTHS, drift, write_drift
+    from models.evaluation.drift import DRIFTS, STRENGTHS, drift, write_drift
     from station.classify.drift import read_reference
     from station.classify.onnx import LOOK, Classifier
 
@@ -263,8 +263,8 @@ def _drift(arguments: argparse.Namespace) -> int:
 
 
 def _first_day(arguments: argparse.Namespace) -> int:
-    from models.first_day import first_day
-    from models.reference import make_reference
+    from models.classifier.reference import make_reference
+    from models.evaluation.first_day import first_day
     from station.classify.drift import write_reference
     from station.replay.files import sources
 

@@ -11,8 +11,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from models.export import write_onnx
-from models.paper import PaperNet
+from models.classifier.export import write_onnx
+from models.paper.network import PaperNet
 from station.classify.onnx import Classifier, Network
 from station.domain import SEGMENT_PX, SEGMENTS
 

@@ -59,7 +59,7 @@ def test_importing_touches_no_device_thread_or_variant() -> None:
     code = (
         "import sys, threading, importlib\n"
         "names = ['station.engine.startup', 'station.plc.wire.modbus', 'station.panel.window']\n"
-        "names += ['synth.output.dataset', 'models.train', 'deploy.demo.run']\n"
+        "names += ['synth.output.dataset', 'models.classifier.train', 'deploy.demo.run']\n"
         "for name in names:\n"
         "    importlib.import_module(name)\n"
         "assert threading.active_count() == 1, threading.enumerate()\n"

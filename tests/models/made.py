@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import CHANNELS, Crops, coarse, empty_maps
+from models.data.crops import CHANNELS, Crops, coarse, empty_maps
 from station.classify.onnx import CLASSES
 
 KINDS = CLASSES

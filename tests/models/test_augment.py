@@ -1,7 +1,7 @@
 import numpy as np
 import torch
 
-from models.augment import augment
+from models.data.augment import augment
 from tests.models.made import crops
 
 

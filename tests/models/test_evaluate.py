@@ -6,16 +6,16 @@ import cv2
 import numpy as np
 import pytest
 
-import models.train
+import models.classifier.train
 from models.__main__ import main
-from models.drift import DRIFTS, STRENGTHS, drift, write_drift
+from models.classifier.export import read_network
+from models.classifier.train import fine_tune
+from models.data.labelled import read_lot
 from models.errors import LearningError
-from models.evaluate import evaluate_lot
-from models.export import read_network
-from models.first_day import first_day
-from models.labelled import read_lot
-from models.report import lines, summary, write_report
-from models.train import fine_tune
+from models.evaluation.drift import DRIFTS, STRENGTHS, drift, write_drift
+from models.evaluation.evaluate import evaluate_lot
+from models.evaluation.first_day import first_day
+from models.evaluation.report import lines, summary, write_report
 from station.classify.drift import Reference, read_reference
 from station.classify.onnx import LOOK, Classifier, RingNetwork
 from station.inspection.inspector import Inspector
@@ -89,7 +89,7 @@ def test_the_first_day_writes_a_reference_of_good_parts_only(
     inspector: Inspector, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     parts = 8
-    monkeypatch.setattr("models.reference.MIN_PARTS", parts)
+    monkeypatch.setattr("models.classifier.reference.MIN_PARTS", parts)
     image = cv2.imread(str(FRAMES / label_with("OK")["frame"]), cv2.IMREAD_GRAYSCALE)
     for i in range(parts):
         made = np.clip(image * (0.9 + 0.025 * i), 0, 255).astype(np.uint8)
@@ -134,7 +134,7 @@ def test_a_shipped_network_can_be_trained_further_on_a_lines_own_parts(tmp_path:
         (folder / "frames" / name).symlink_to(FRAMES / item["frame"])
         entries.append({**item, "frame": name})
     (folder / "labels.json").write_text(json.dumps({"frames": entries}))
-    monkeypatch.setattr(models.train, "FINE_TUNING", replace(models.train.FINE_TUNING, steps=6, batch=16))
+    monkeypatch.setattr(models.classifier.train, "FINE_TUNING", replace(models.classifier.train.FINE_TUNING, steps=6, batch=16))
     card = fine_tune(folder, MODEL, tmp_path / "out", "0.2-line", 0, lambda _: None)
     assert card["provenance"].startswith("Fine-tuned")
     assert card["held_out"]["f2"] > 0.8

@@ -3,13 +3,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from models.classifier import export as export_file
+from models.ring.train.export import export_ring
 
+from models.classifier import export as export_file
+from models.classifier.export import Contract, export, read_network
+from models.classifier.network import STATISTICS, WeldNet
 from models.errors import LearningError
-from models.export import Contract, export, export_ring, read_network
-from models.network import STATISTICS, WeldNet
-from models.ring import RingNet
-from models.ring_pair import pair_rings
+from models.ring.pair import pair_rings
+from models.ring.train import RingNet
 from station.classify.onnx import Classifier, RingNetwork
 from tests.conftest import RING_MODEL
 from tests.parts import thresholds

@@ -4,9 +4,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models.crops import IGNORED, OK
+from models.data.crops import IGNORED, OK
+from models.data.labelled import Defect, LabelledStrip, crop_label, read_labels, read_lot, split_by_part, station_crops, window_crops
 from models.errors import LearningError
-from models.labelled import Defect, LabelledStrip, crop_label, read_labels, read_lot, split_by_part, station_crops, window_crops
 from station.domain import SEGMENT_DEG, STRIP_COLUMNS
 from tests.models.made import HOLE, MISSING
 from tests.parts import FRAMES

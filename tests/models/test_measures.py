@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from models.crops import OK
-from models.measures import Counts, calibration_error, choose_thresholds, count, refused
-from models.novelty import describe, distances, limit, part_distances
+from models.classifier.novelty import describe, distances, limit, part_distances
+from models.data.crops import OK
+from models.evaluation.measures import Counts, calibration_error, choose_thresholds, count, refused
 from station.analysis.truth import interval
 from station.classify.decision import segment_kind
 from tests.models.made import HOLE, MISSING

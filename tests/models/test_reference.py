@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from models.classifier.reference import MIN_PARTS, make_reference
 from models.errors import LearningError
-from models.reference import MIN_PARTS, make_reference
 from station.classify.drift import DriftWatch
 
 SIZE = 192

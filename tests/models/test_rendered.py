@@ -5,9 +5,9 @@ import cv2
 import numpy as np
 import pytest
 
-from models.crops import OK
+from models.data.crops import OK
+from models.data.rendered import read_rendered
 from models.errors import LearningError
-from models.rendered import read_rendered
 from tests.models.made import HOLE, MISSING, dataset
 
 

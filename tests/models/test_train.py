@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from models.__main__ import main
-from models.card import card_text
-from models.detection import boxes, evaluate_boxes
+from models.classifier.card import card_text
+from models.classifier.fit import Plan, fit
+from models.classifier.network import WeldNet
+from models.classifier.quantize import quantize
+from models.classifier.train import train
+from models.data.rendered import read_rendered
 from models.errors import LearningError
-from models.fit import Plan, fit
-from models.network import WeldNet
-from models.paper_protocol import PaperPlan, paper_scores, train_paper
-from models.quantize import quantize
-from models.rendered import read_rendered
-from models.train import train
+from models.evaluation.detection import boxes, evaluate_boxes
+from models.paper.train import PaperPlan, paper_scores, train_paper
 from station.classify.onnx import Classifier
 from station.defects import KINDS
 from tests.conftest import MODEL

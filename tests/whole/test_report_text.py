@@ -15,10 +15,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-import models.report
+import models.evaluation.report
 import station.analysis.report.page
 import station.replay.report
-from models.evaluate import Evaluation, PartResult, evaluate_lot
+from models.evaluation.evaluate import Evaluation, PartResult, evaluate_lot
 from station.__main__ import main
 from station.analysis.report.template import UNSEEN, render
 from station.archive.writer import Archive
@@ -104,7 +104,7 @@ def pages(
     folder = tmp_path_factory.mktemp("pages")
     given: dict[Path, object] = {}
     with pytest.MonkeyPatch.context() as patch:
-        for module in (station.analysis.report.page, station.replay.report, models.report):
+        for module in (station.analysis.report.page, station.replay.report, models.evaluation.report):
             patch.setattr(module, "render", _noting(given))
         records = _records(folder / "records", frames[label_with("hole")["frame"]])
         (folder / "truth.json").write_text(json.dumps({HOSTILE + "0": "NOK", HOSTILE + "1": "OK"}))
@@ -117,7 +117,7 @@ def pages(
         (folder / "truth.json").write_text(json.dumps({f"OK{FILE}": "NOK", f"NOK{FILE}": "OK"}))
         ways = ["--processes", "1", "--report", str(folder / "replay"), "--truth", str(folder / "truth.json")]
         assert main(["replay", str(folder / "images"), str(records), *ways]) == 1
-        models.report.write_report(evaluation, folder / "evaluation", HOSTILE, {HOSTILE: HOSTILE})
+        models.evaluation.report.write_report(evaluation, folder / "evaluation", HOSTILE, {HOSTILE: HOSTILE})
     files = (folder / "r.html", folder / "replay" / "report.html", folder / "evaluation" / "report.html")
     return {
         template: (page, file.read_text())
@@ -197,7 +197,8 @@ IMPORTS = """
 import sys
 opened = []
 sys.addaudithook(lambda event, facts: opened.append(str(facts[0])) if event == "open" else None)
-import models.report, station.replay.report, station.analysis.report.page
+import models.evaluation.report, station.replay.report, station.analysis.report.page
+import models.evaluation.report, station.replay.report, station.analysis.report.page
 print([name for name in opened if name.endswith((".j2", ".css"))], "jinja2" in sys.modules)
 """
 

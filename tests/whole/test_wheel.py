@@ -97,7 +97,7 @@ def test_a_wheel_holds_one_package_with_every_file_of_the_rooms(wheel: Path) -> 
         for path in (ROOT / room / "shipped").iterdir()
     }
     expected |= {
-        "models/report.html.j2",
+        "models/evaluation/report.html.j2",
         "deploy/station.toml",
         *(f"deploy/frames/{path.name}" for path in FRAMES.iterdir()),
     }

@@ -10,17 +10,17 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from models.card import write_card
-from models.crops import DEFECTS, OK, Crops, only
+from models.classifier.card import write_card
+from models.classifier.export import Contract, export, read_network
+from models.classifier.fit import Plan, Report, fit, predict
+from models.classifier.network import WeldNet
+from models.classifier.novelty import describe, distances, limit, part_distances
+from models.data.crops import DEFECTS, OK, Crops, only
+from models.data.labelled import WINDOW_STEP_PX, data_hash, read_lot, split_by_part, station_crops, window_crops
+from models.data.rendered import read_rendered
 from models.errors import LearningError
-from models.export import Contract, export, read_network
-from models.fit import Plan, Report, fit, predict
-from models.labelled import WINDOW_STEP_PX, data_hash, read_lot, split_by_part, station_crops, window_crops
-from models.measures import ESCAPE_COST, calibration_error, choose_thresholds, count, line_weights, prior_shift, refused, shifted
-from models.network import WeldNet
-from models.novelty import describe, distances, limit, part_distances
-from models.rendered import read_rendered
-from models.scores import class_scores
+from models.evaluation.measures import ESCAPE_COST, calibration_error, choose_thresholds, count, line_weights, prior_shift, refused, shifted
+from models.evaluation.scores import class_scores
 from station.classify.onnx import Classifier
 from station.classify.thresholds import Thresholds
 

@@ -16,13 +16,11 @@ from onnx import numpy_helper
 from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
+from models.classifier.network import STATISTICS, WeldNet
 from models.errors import LearningError
-from models.network import STATISTICS, WeldNet
-from models.ring import RingNet
-from station.classify.onnx import CLASSES, Classifier, RingNetwork
+from station.classify.onnx import CLASSES, Classifier
 from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_PX
-from station.vision.polar import COLUMNS, ROWS
 
 TOLERANCE = 1e-4
 
@@ -87,23 +85,13 @@ def export(network: WeldNet, path: Path, contract: Contract) -> None:
     with torch.no_grad():
         whole.whiten.weight.copy_(torch.from_numpy(contract.whitening.T))
         whole.whiten.bias.copy_(torch.from_numpy(-contract.mean @ contract.whitening))
-    crops = torch.from_numpy(_example((21, 1, SEGMENT_PX, SEGMENT_PX)))
+    crops = torch.from_numpy(example_images((21, 1, SEGMENT_PX, SEGMENT_PX)))
     part = write_onnx(whole, crops, path, "crops", ("probabilities", "maps", "looks"), contract.metadata())
     with torch.no_grad():
         wanted = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
     got = Classifier(part)(crops.numpy()[:, 0])
     pairs = zip(wanted, (np.array([(s.ok, *s.defects.values()) for s in got.scores]), got.maps, got.looks), strict=True)
     keep(part, path, max(largest_gap(a, b) for a, b in pairs))
-
-
-def export_ring(network: RingNet, path: Path, version: str, data_hash: str) -> None:
-    """Write the ring network. Raises LearningError if the file's answers differ from the network's by more than 1e-4."""
-    bands = torch.from_numpy(_example((1, 1, ROWS, COLUMNS)))
-    metadata = {"weldgate.data_hash": data_hash, "weldgate.version": version}
-    part = write_onnx(network.eval(), bands, path, "bands", ("sectors",), metadata)
-    with torch.no_grad():
-        wanted = np.asarray(network(bands).numpy(), np.float64)
-    keep(part, path, largest_gap(wanted, RingNetwork(part).sectors(bands.numpy()[:, 0])))
 
 
 def read_network(path: Path) -> WeldNet:
@@ -121,7 +109,8 @@ def read_network(path: Path) -> WeldNet:
     return network
 
 
-def _example(shape: tuple[int, ...]) -> NDArray[np.uint8]:
+def example_images(shape: tuple[int, ...]) -> NDArray[np.uint8]:
+    """Return images of noise, always the same, to trace a network with and to compare its file with it."""
     return np.random.default_rng(0).integers(0, 256, shape, dtype=np.uint8)
 
 

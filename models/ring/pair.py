@@ -10,7 +10,7 @@ import numpy as np
 import onnx
 from onnx import TensorProto, compose, helper
 
-from models.export import keep, largest_gap, save
+from models.classifier.export import keep, largest_gap, save
 from station.classify.onnx import RingNetwork
 from station.vision.polar import COLUMNS, ROWS, SECTORS
 

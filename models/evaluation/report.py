@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from models.crops import OK
-from models.evaluate import Evaluation
-from models.measures import ESCAPE_COST, calibration_error, count
+from models.data.crops import OK
+from models.evaluation.evaluate import Evaluation
+from models.evaluation.measures import ESCAPE_COST, calibration_error, count
 from station.analysis.report.template import render
 from station.analysis.truth import interval
 from station.classify.onnx import CLASSES
@@ -143,7 +143,7 @@ def write_report(found: Evaluation, folder: Path, title: str, facts: dict[str, s
 
 
 def _page(found: Evaluation, figures: dict[str, Any], title: str, facts: dict[str, str]) -> EvaluationPage:
-    from models.figures import curves, sheet
+    from models.evaluation.figures import curves, sheet
 
     nok, truth = 1 - found.scores[:, OK], found.labels != OK
     confusion, defects = figures["segments"]["confusion"], figures.get("defects", ())

@@ -14,8 +14,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from models.labelled import read_images
-from models.network import channels_last
+from models.classifier.network import channels_last
+from models.data.labelled import read_images
 from station.vision.polar import ROWS, SECTORS, polar_band
 
 BIN_PX = 4

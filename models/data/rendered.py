@@ -9,7 +9,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from models.crops import CHANNELS, Crops, coarse, empty_maps, join
+from models.data.crops import CHANNELS, Crops, coarse, empty_maps, join
 from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_PX

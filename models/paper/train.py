@@ -15,13 +15,13 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from models.crops import OK, Crops
-from models.export import write_onnx
-from models.fit import Report
-from models.measures import count
-from models.network import channels_last
-from models.paper import PaperNet
-from models.rendered import read_rendered
+from models.classifier.export import write_onnx
+from models.classifier.fit import Report
+from models.classifier.network import channels_last
+from models.data.crops import OK, Crops
+from models.data.rendered import read_rendered
+from models.evaluation.measures import count
+from models.paper.network import PaperNet
 from station.classify.onnx import Network
 
 BATCH = 256

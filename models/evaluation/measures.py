@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import DEFECTS, OK
+from models.data.crops import DEFECTS, OK
 from station.classify.onnx import CLASSES
 from station.classify.thresholds import Limit, Thresholds
 from station.defects import KINDS

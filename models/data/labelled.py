@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import DEFECTS, IGNORED, OK, Crops, empty_maps
+from models.data.crops import DEFECTS, IGNORED, OK, Crops, empty_maps
 from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, Ring

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from models.crops import CHANNELS, OK, Crops
+from models.data.crops import CHANNELS, OK, Crops
 from models.errors import LearningError
-from models.measures import Counts, count
+from models.evaluation.measures import Counts, count
 from station.classify.extent import CELL_PX, CELLS, LEVEL, Map, extents
 from station.classify.onnx import CLASSES, Classifier, Judged
 from station.defects import DefectKind

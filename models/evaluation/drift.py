@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import IGNORED, OK
-from models.labelled import LabelledStrip, read_lot
-from models.measures import Counts, count
+from models.data.crops import IGNORED, OK
+from models.data.labelled import LabelledStrip, read_lot
+from models.evaluation.measures import Counts, count
 from station.classify.decision import segment_kind
 from station.classify.drift import DriftWatch, Reference
 from station.classify.onnx import Classifier
@@ -129,7 +129,7 @@ def _drifting(looks: list[NDArray[np.float64]], reference: Reference | None) -> 
 
 def write_drift(steps: list[Step], out: Path) -> None:
     """`drift.json` and `drift.png` in `out`."""
-    from models.figures import drift_curves
+    from models.evaluation.figures import drift_curves
 
     out.mkdir(parents=True, exist_ok=True)
     rows = [

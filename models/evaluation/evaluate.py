@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.crops import IGNORED, OK, Crops
-from models.labelled import crop_label, defects_of, frames, read_labels
-from models.measures import refused
-from models.scores import class_scores, row_of
+from models.data.crops import IGNORED, OK, Crops
+from models.data.labelled import crop_label, defects_of, frames, read_labels
+from models.evaluation.measures import refused
+from models.evaluation.scores import class_scores, row_of
 from station.classify.onnx import CLASSES, Classifier
 from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_DEG, SEGMENTS, Inspection, Verdict

@@ -11,9 +11,9 @@ from torch import Tensor, nn
 from torch.nn import functional
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
-from models.augment import augment
-from models.crops import DEFECTS, OK, Crops
-from models.network import WeldNet, channels_last
+from models.classifier.network import WeldNet, channels_last
+from models.data.augment import augment
+from models.data.crops import DEFECTS, OK, Crops
 from station.defects import KINDS
 
 Report = Callable[[str], None]

@@ -12,10 +12,10 @@ import onnx
 from onnxruntime.quantization import CalibrationDataReader, CalibrationMethod, QuantFormat, QuantType, quantize_static
 from onnxruntime.quantization.shape_inference import quant_pre_process
 
-from models.crops import OK, Crops
+from models.data.crops import OK, Crops
 from models.errors import LearningError
-from models.measures import count, refused
-from models.scores import class_scores
+from models.evaluation.measures import count, refused
+from models.evaluation.scores import class_scores
 from station.classify.onnx import Classifier
 
 CALIBRATION_CROPS = 400
