@@ -16,16 +16,13 @@ from numpy.typing import NDArray
 
 from models.data.crops import DEFECTS, IGNORED, OK, Crops, empty_maps
 from models.errors import LearningError, listed
+from station.classify.crop_label import crop_label
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, Ring
 from station.errors import ImageError, LocateError
 from station.files.image import read_image
 from station.vision.unwrap import unwrap
 
-MIN_OVERLAP = 0.2
-"""A crop is NOK if a defect covers this share of the smaller of crop and defect; below, but not 0, it is ignored."""
-TOUCH_DEG = 1e-6
-"""Less is rounding, not overlap."""
 WINDOW_STEP_PX = 10
 SHARES = (0.70, 0.15, 0.15)
 LABELS = {name: label for label, name in enumerate(CLASSES) if label != OK}
@@ -57,25 +54,13 @@ class LabelledStrip:
     def crop_label(self, column: int) -> int:
         """Label of the crop that starts at `column`, `IGNORED` included."""
         start = column * 360.0 / STRIP_COLUMNS
-        return crop_label(self.defects, start, start + SEGMENT_DEG)
+        return label_of_arc(self.defects, start, start + SEGMENT_DEG)
 
 
-def crop_label(defects: tuple[Defect, ...], start_deg: float, end_deg: float) -> int:
-    """Return the label of the arc [start, end]: the gravest kind of defect that covers enough of it; any weighs more than IGNORED."""
-    label, touched = OK, False
-    width = end_deg - start_deg
-    for defect in defects:
-        length = defect.end_deg - defect.start_deg
-        turns = (0.0,) if length >= 360 else (-720.0, -360.0, 0.0, 360.0)
-        if length >= 360:
-            overlap = width
-        else:
-            overlap = sum(max(0.0, min(defect.end_deg + k, end_deg) - max(defect.start_deg + k, start_deg)) for k in turns)
-        if overlap / max(min(width, length), 1e-9) >= MIN_OVERLAP:
-            label = max(label, defect.label)
-        elif overlap > TOUCH_DEG:
-            touched = True
-    return IGNORED if label == OK and touched else label
+def label_of_arc(defects: Sequence[Defect], start_deg: float, end_deg: float) -> int:
+    """Return the label of the crop over the arc [start, end]: that of the gravest kind of defect in it, OK or IGNORED."""
+    shown = crop_label(((CLASSES[d.label], d.start_deg, d.end_deg) for d in defects), start_deg, end_deg)
+    return IGNORED if shown is None else CLASSES.index(shown)
 
 
 def frames(folder: Path, items: Sequence[dict[str, Any]]) -> Iterator[tuple[dict[str, Any], NDArray[np.uint8]]]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.data.crops import IGNORED, OK, Crops
-from models.data.labelled import crop_label, defects_of, frames, read_labels
+from models.data.labelled import defects_of, frames, label_of_arc, read_labels
 from models.evaluation.measures import refused
 from models.evaluation.scores import class_scores, row_of
 from station.classify.onnx import CLASSES, Classifier
@@ -92,7 +92,7 @@ def evaluate_lot(lot: Path, inspector: Inspector, progress: Callable[[], None] =
     for item, image in frames(lot, items):
         judged = inspector.inspect(image)
         defects = defects_of(item)
-        labels = [crop_label(defects, i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i in range(SEGMENTS)]
+        labels = [label_of_arc(defects, i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) for i in range(SEGMENTS)]
         nok = list(judged.nok) or [False] * SEGMENTS
         crops.add(str(item["frame"]), image, judged, labels, nok)
         parts.append(_part(item, judged, nok, inspector))
@@ -150,7 +150,7 @@ def _part(item: dict[str, Any], judged: Inspection, nok: list[bool], inspector: 
     ring = judged.ring
     found = []
     for defect, entry in zip(defects_of(item), item["defects"], strict=True):
-        on = [i for i in range(SEGMENTS) if crop_label((defect,), i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) > OK]
+        on = [i for i in range(SEGMENTS) if label_of_arc((defect,), i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG) > OK]
         kind = CLASSES[defect.label]
         length = entry.get("length_mm")
         found.append(Defect(kind, None if length is None else float(length), any(nok[i] for i in on)))

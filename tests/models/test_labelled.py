@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from models.data.crops import IGNORED, OK
-from models.data.labelled import Defect, LabelledStrip, crop_label, read_labels, read_lot, split_by_part, station_crops, window_crops
+from models.data.labelled import Defect, LabelledStrip, label_of_arc, read_labels, read_lot, split_by_part, station_crops, window_crops
 from models.errors import LearningError
 from station.domain import SEGMENT_DEG, STRIP_COLUMNS
 from tests.models.made import HOLE, MISSING
@@ -27,7 +27,7 @@ from tests.parts import FRAMES
     ],
 )
 def test_labels_of_the_first_crop(defects: tuple[Defect, ...], wanted: int) -> None:
-    assert crop_label(defects, 0.0, SEGMENT_DEG) == wanted
+    assert label_of_arc(defects, 0.0, SEGMENT_DEG) == wanted
 
 
 def strips(count: int) -> list[LabelledStrip]:
