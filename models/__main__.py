@@ -43,7 +43,9 @@ def _check_numbers(arguments: argparse.Namespace) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="weldgate-models", description="Train, judge and release the networks.")
+    parser = argparse.ArgumentParser(
+        prog="weldgate-models", description="Train, judge and release the networks."
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def add(name: str, command: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
@@ -52,18 +54,46 @@ def _parser() -> argparse.ArgumentParser:
         return sub
 
     train = add("train", _train, "train the classifier on rendered crops and release it with its card")
-    train.add_argument("datasets", type=Path, nargs="+", metavar="DATASET", help="folders made by weldgate-synth dataset")
+    train.add_argument(
+        "datasets", type=Path, nargs="+", metavar="DATASET", help="folders made by weldgate-synth dataset"
+    )
     _run_options(train)
-    train.add_argument("--seeds", type=int, nargs="+", default=[0], metavar="N", help="one run each; more than one: a folder each")
+    train.add_argument(
+        "--seeds",
+        type=int,
+        nargs="+",
+        default=[0],
+        metavar="N",
+        help="one run each; more than one: a folder each",
+    )
     train.add_argument("--steps", type=int, metavar="N", help="batches of 64 (default: 5000)")
-    train.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds of defect to learn (default: all)")
-    train.add_argument("--protocol", choices=("weldgate", "paper"), default="weldgate", help="paper: OK against NOK as published")
+    train.add_argument(
+        "--kinds",
+        nargs="+",
+        choices=KINDS,
+        default=list(KINDS),
+        help="kinds of defect to learn (default: all)",
+    )
+    train.add_argument(
+        "--protocol",
+        choices=("weldgate", "paper"),
+        default="weldgate",
+        help="paper: OK against NOK as published",
+    )
 
-    fine = add("fine-tune", _fine_tune, "train on a line's own labelled images: 10 px window, balanced, 70/15/15 %% by part")
+    fine = add(
+        "fine-tune",
+        _fine_tune,
+        "train on a line's own labelled images: 10 px window, balanced, 70/15/15 %% by part",
+    )
     fine.add_argument("lot", type=Path, metavar="LOT", help="folder with labels.json and frames/")
     _run_options(fine)
     fine.add_argument(
-        "--model", type=Path, default=SHIPPED / "weldgate.onnx", metavar="FILE", help="where to begin (default: the shipped one)"
+        "--model",
+        type=Path,
+        default=SHIPPED / "weldgate.onnx",
+        metavar="FILE",
+        help="where to begin (default: the shipped one)",
     )
     fine.add_argument("--from-nothing", action="store_true", help="train a new network on these images alone")
     fine.add_argument("--seed", type=int, default=0, help="seed of split and training (default: %(default)s)")
@@ -73,49 +103,106 @@ def _parser() -> argparse.ArgumentParser:
     _run_options(ring)
     ring.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")
 
-    pair = add("pair-rings", _pair_rings, "join two ring networks in one file: exact where the first sees, seeing where it is blind")
+    pair = add(
+        "pair-rings",
+        _pair_rings,
+        "join two ring networks in one file: exact where the first sees, seeing where it is blind",
+    )
     pair.add_argument("first", type=Path, metavar="FILE", help="the more exact network")
     pair.add_argument("second", type=Path, metavar="FILE", help="the network that sees more")
     _run_options(pair)
 
-    judge = add("evaluate", _evaluate, "judge labelled parts, or the crops held out of datasets, with the station's own code")
-    judge.add_argument("data", type=Path, nargs="+", metavar="DATA", help="one lot with labels.json and frames/, or rendered datasets")
+    judge = add(
+        "evaluate",
+        _evaluate,
+        "judge labelled parts, or the crops held out of datasets, with the station's own code",
+    )
+    judge.add_argument(
+        "data",
+        type=Path,
+        nargs="+",
+        metavar="DATA",
+        help="one lot with labels.json and frames/, or rendered datasets",
+    )
     _network_options(judge)
-    judge.add_argument("--report", type=Path, metavar="DIR", help="write report.html and evaluation.json there")
-    judge.add_argument("--boxes", action="store_true", help="judge the boxes of the defect map too (datasets only)")
-    judge.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), help="kinds whose boxes are looked for (default: all)")
+    judge.add_argument(
+        "--report", type=Path, metavar="DIR", help="write report.html and evaluation.json there"
+    )
+    judge.add_argument(
+        "--boxes", action="store_true", help="judge the boxes of the defect map too (datasets only)"
+    )
+    judge.add_argument(
+        "--kinds",
+        nargs="+",
+        choices=KINDS,
+        default=list(KINDS),
+        help="kinds whose boxes are looked for (default: all)",
+    )
 
     export = add("export", _export, "make the 8-bit file of a classifier, kept only if it judges as well")
     export.add_argument("model", type=Path, metavar="FILE", help="float32 classifier")
     export.add_argument(
-        "datasets", type=Path, nargs="+", metavar="DATASET", help="rendered datasets: to calibrate, and to judge both files"
+        "datasets",
+        type=Path,
+        nargs="+",
+        metavar="DATASET",
+        help="rendered datasets: to calibrate, and to judge both files",
     )
     export.add_argument("--out", type=Path, required=True, metavar="FILE", help="where the 8-bit file goes")
 
     drift = add("drift", _drift, "show how accuracy and the alarm answer to a line that drifts")
     drift.add_argument("lot", type=Path, metavar="LOT", help="folder with labels.json and frames/")
     drift.add_argument(
-        "--model", type=Path, default=SHIPPED / "weldgate.onnx", metavar="FILE", help="classifier (default: the shipped one)"
+        "--model",
+        type=Path,
+        default=SHIPPED / "weldgate.onnx",
+        metavar="FILE",
+        help="classifier (default: the shipped one)",
     )
-    drift.add_argument("--reference", type=Path, metavar="FILE", help="of other, good parts of the same line, from first-day")
-    drift.add_argument("--out", type=Path, required=True, metavar="DIR", help="where drift.png and drift.json go")
+    drift.add_argument(
+        "--reference", type=Path, metavar="FILE", help="of other, good parts of the same line, from first-day"
+    )
+    drift.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="where drift.png and drift.json go"
+    )
 
-    first = add("first-day", _first_day, "check thresholds and images with OK parts alone, before production begins")
-    first.add_argument("paths", type=Path, nargs="+", metavar="PATH", help="images of parts known to be OK, or folders of them")
+    first = add(
+        "first-day", _first_day, "check thresholds and images with OK parts alone, before production begins"
+    )
     first.add_argument(
-        "--reference", type=Path, metavar="FILE", help="write the look of these parts, for model.reference_path: at least 20 parts"
+        "paths",
+        type=Path,
+        nargs="+",
+        metavar="PATH",
+        help="images of parts known to be OK, or folders of them",
+    )
+    first.add_argument(
+        "--reference",
+        type=Path,
+        metavar="FILE",
+        help="write the look of these parts, for model.reference_path: at least 20 parts",
     )
     _network_options(first)
     return parser
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the ONNX file and its card go")
-    parser.add_argument("--version", default="0.1.0", help="version written into the file (default: %(default)s)")
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="where the ONNX file and its card go"
+    )
+    parser.add_argument(
+        "--version", default="0.1.0", help="version written into the file (default: %(default)s)"
+    )
 
 
 def _network_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-c", "--settings", type=Path, metavar="FILE", help="settings file (default: the shipped limits and networks)")
+    parser.add_argument(
+        "-c",
+        "--settings",
+        type=Path,
+        metavar="FILE",
+        help="settings file (default: the shipped limits and networks)",
+    )
     parser.add_argument("--model", type=Path, metavar="FILE", help="classifier, in place of the settings'")
     parser.add_argument("--ring", type=Path, metavar="FILE", help="ring network, in place of the settings'")
 
@@ -135,7 +222,11 @@ def _inspector(arguments: argparse.Namespace) -> "Inspector":
     from station.settings.model import for_images
 
     settings = for_images(SHIPPED) if arguments.settings is None else load(arguments.settings)
-    named = {key: value for key, value in (("path", arguments.model), ("ring_path", arguments.ring)) if value is not None}
+    named = {
+        key: value
+        for key, value in (("path", arguments.model), ("ring_path", arguments.ring))
+        if value is not None
+    }
     return load_inspector(settings.model_copy(update={"model": settings.model.model_copy(update=named)}))[0]
 
 
@@ -155,13 +246,17 @@ def _train(arguments: argparse.Namespace) -> int:
             card = train_paper(arguments.datasets, out, replace(PaperPlan(), seed=seed), _say)
         else:
             plan = Plan(seed=seed) if arguments.steps is None else Plan(seed=seed, steps=arguments.steps)
-            card = train(arguments.datasets, out, arguments.version, plan, [KINDS[k] for k in arguments.kinds], _say)
+            card = train(
+                arguments.datasets, out, arguments.version, plan, [KINDS[k] for k in arguments.kinds], _say
+            )
         cards.append(card)
         _say(f"seed {seed}: {json.dumps(card['held_out'])} in {card['seconds']:.0f} s, in {out}")
     if len(cards) > 1:
         for key in ("precision", "recall", "f2"):
             values = sorted(card["held_out"][key] for card in cards)
-            _say(f"held out {key}: {values[0]:.4f} to {values[-1]:.4f}, median {values[len(values) // 2]:.4f}")
+            _say(
+                f"held out {key}: {values[0]:.4f} to {values[-1]:.4f}, median {values[len(values) // 2]:.4f}"
+            )
     return 0
 
 
@@ -202,8 +297,15 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from models.evaluation.report import lines, write_report
 
     inspector = _inspector(arguments)
-    rendered = [(folder / "manifest.json").is_file() and not (folder / "labels.json").is_file() for folder in arguments.data]
-    facts = {"data": ", ".join(map(str, arguments.data)), "model": inspector.card.version, "model SHA-256": inspector.card.file_hash}
+    rendered = [
+        (folder / "manifest.json").is_file() and not (folder / "labels.json").is_file()
+        for folder in arguments.data
+    ]
+    facts = {
+        "data": ", ".join(map(str, arguments.data)),
+        "model": inspector.card.version,
+        "model SHA-256": inspector.card.file_hash,
+    }
     extra: list[str] = []
     if all(rendered):
         held = read_rendered(arguments.data)[1]
@@ -218,7 +320,12 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     for line in [*lines(found), *extra]:
         _say(line)
     if arguments.report is not None:
-        write_report(found, arguments.report, "weldgate: evaluation", {**facts, **({"boxes": "; ".join(extra)} if extra else {})})
+        write_report(
+            found,
+            arguments.report,
+            "weldgate: evaluation",
+            {**facts, **({"boxes": "; ".join(extra)} if extra else {})},
+        )
         _say(f"report: {arguments.report / 'report.html'}")
     return 0
 
@@ -241,7 +348,9 @@ def _export(arguments: argparse.Namespace) -> int:
 
     training, held, _ = read_rendered(arguments.datasets)
     f2 = quantize(arguments.model, arguments.out, training, held)
-    _say(f"{arguments.out}: F2 {f2['int8']:.4f} in 8 bits, {f2['float32']:.4f} in float32, on {len(held)} crops held out")
+    _say(
+        f"{arguments.out}: F2 {f2['int8']:.4f} in 8 bits, {f2['float32']:.4f} in float32, on {len(held)} crops held out"
+    )
     return 0
 
 
@@ -256,7 +365,9 @@ def _drift(arguments: argparse.Namespace) -> int:
     with _progress("drifting", len(DRIFTS) * len(STRENGTHS)) as advance:
         steps = drift(arguments.lot, classifier, reference, advance)
     for s in steps:
-        _say(f"{s.drift:26} {s.strength:4.2f}  recall {s.segments.recall:.3f}  F2 {s.segments.f2:.3f}  alarms {s.alarms:.0%}")
+        _say(
+            f"{s.drift:26} {s.strength:4.2f}  recall {s.segments.recall:.3f}  F2 {s.segments.f2:.3f}  alarms {s.alarms:.0%}"
+        )
     write_drift(steps, arguments.out)
     _say(str(arguments.out / "drift.png"))
     return 0
@@ -277,7 +388,11 @@ def _first_day(arguments: argparse.Namespace) -> int:
     for line in found.lines():
         _say(line)
     if arguments.reference is not None:
-        _say(f"reference: {arguments.reference}" if found.good else "no reference written: remove or correct the parts named above")
+        _say(
+            f"reference: {arguments.reference}"
+            if found.good
+            else "no reference written: remove or correct the parts named above"
+        )
     return 0 if found.good else 1
 
 

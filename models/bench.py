@@ -40,7 +40,9 @@ def main() -> None:
     runs: dict[str, Callable[[], object]] = {}
     with tempfile.TemporaryDirectory() as folder:
         images = torch.zeros((SEGMENTS, 3, SEGMENT_PX, SEGMENT_PX))
-        path = write_onnx(_Plain(PaperNet(3).eval()), images, Path(folder) / "paper.onnx", "images", ("logits",), {})
+        path = write_onnx(
+            _Plain(PaperNet(3).eval()), images, Path(folder) / "paper.onnx", "images", ("logits",), {}
+        )
         paper = Network(path, THREADS)
         whole = images.numpy()
         runs["the paper's network, 1.6 M weights"] = lambda: paper.run(("logits",), {"images": whole})

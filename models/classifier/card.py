@@ -18,16 +18,27 @@ def card_text(card: dict[str, Any]) -> str:
     held, thresholds = card["held_out"], card["thresholds"]
     kinds = ", ".join(kind_named(name).reason for name in thresholds)
     limits = ", ".join(f"{kind_named(name).reason} {value}" for name, value in thresholds.items())
-    channels = " or ".join(f"a {kind_named(name).reason}" for name in thresholds if kind_named(name).is_mapped)
+    channels = " or ".join(
+        f"a {kind_named(name).reason}" for name in thresholds if kind_named(name).is_mapped
+    )
     rows = [
         ("version", card["version"]),
-        ("trained on", f"{card['training_crops']} crops; OK, {kinds}: {', '.join(map(str, card['training_kinds']))}"),
+        (
+            "trained on",
+            f"{card['training_crops']} crops; OK, {kinds}: {', '.join(map(str, card['training_kinds']))}",
+        ),
         ("held out", f"{card['held_out_crops']} crops of other parts of the same data"),
         ("data SHA-256", card["data_hash"]),
         ("weights", card["weights"]),
         ("thresholds", f"{limits}: best F2 on the crops held out"),
-        ("precision, recall, F2", f"{held['precision']:.4f}, {held['recall']:.4f}, {held['f2']:.4f} of NOK on them, through the file"),
-        ("escapes, false rejects", f"{held['fn']}, {held['fp']} of {held['fn'] + held['tp']} NOK and {held['fp'] + held['tn']} OK crops"),
+        (
+            "precision, recall, F2",
+            f"{held['precision']:.4f}, {held['recall']:.4f}, {held['f2']:.4f} of NOK on them, through the file",
+        ),
+        (
+            "escapes, false rejects",
+            f"{held['fn']}, {held['fp']} of {held['fn'] + held['tp']} NOK and {held['fp'] + held['tn']} OK crops",
+        ),
         ("calibration error", f"{held['calibration_error']:.4f}"),
         ("novelty limit", card["novelty_limit"]),
         ("training time", f"{card['seconds']:.0f} s"),

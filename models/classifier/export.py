@@ -46,7 +46,9 @@ class Contract:
         """As in the file."""
         return {
             "weldgate.classes": json.dumps(CLASSES),
-            "weldgate.thresholds": json.dumps({limit.kind.name: limit.threshold for limit in self.thresholds.kinds}),
+            "weldgate.thresholds": json.dumps(
+                {limit.kind.name: limit.threshold for limit in self.thresholds.kinds}
+            ),
             "weldgate.novelty_limit": json.dumps(self.novelty_limit),
             "weldgate.data_hash": self.data_hash,
             "weldgate.version": self.version,
@@ -90,7 +92,11 @@ def export(network: WeldNet, path: Path, contract: Contract) -> None:
     with torch.no_grad():
         wanted = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
     got = Classifier(part)(crops.numpy()[:, 0])
-    pairs = zip(wanted, (np.array([(s.ok, *s.defects.values()) for s in got.scores]), got.maps, got.looks), strict=True)
+    pairs = zip(
+        wanted,
+        (np.array([(s.ok, *s.defects.values()) for s in got.scores]), got.maps, got.looks),
+        strict=True,
+    )
     keep(part, path, max(largest_gap(a, b) for a, b in pairs))
 
 
@@ -98,13 +104,20 @@ def read_network(path: Path) -> WeldNet:
     """The network of a classifier file, to train it further. Raises ModelError or LearningError if it is none."""
     classes = tuple(limit.kind.name for limit in Classifier(path).card.thresholds.kinds)
     if classes != CLASSES[1:]:
-        raise LearningError(f"{path}: knows {', '.join(classes)}, today's kinds are {', '.join(CLASSES[1:])}; train a new network")
+        raise LearningError(
+            f"{path}: knows {', '.join(classes)}, today's kinds are {', '.join(CLASSES[1:])}; train a new network"
+        )
     network = fused(WeldNet())
-    held = {i.name: torch.from_numpy(numpy_helper.to_array(i).copy()) for i in onnx.load(str(path)).graph.initializer}
+    held = {
+        i.name: torch.from_numpy(numpy_helper.to_array(i).copy())
+        for i in onnx.load(str(path)).graph.initializer
+    }
     weights = {name: held.get(f"network.{name}") for name in network.state_dict()}
     lacking = [name for name, value in weights.items() if value is None]
     if lacking:
-        raise LearningError(f"{path}: not a float32 file of this network, it lacks {lacking[0]}; name one made by weldgate-models train")
+        raise LearningError(
+            f"{path}: not a float32 file of this network, it lacks {lacking[0]}; name one made by weldgate-models train"
+        )
     network.load_state_dict({name: value for name, value in weights.items() if value is not None})
     return network
 
@@ -114,7 +127,14 @@ def example_images(shape: tuple[int, ...]) -> NDArray[np.uint8]:
     return np.random.default_rng(0).integers(0, 256, shape, dtype=np.uint8)
 
 
-def write_onnx(module: nn.Module, example: Tensor, path: Path, source: str, targets: tuple[str, ...], metadata: dict[str, str]) -> Path:
+def write_onnx(
+    module: nn.Module,
+    example: Tensor,
+    path: Path,
+    source: str,
+    targets: tuple[str, ...],
+    metadata: dict[str, str],
+) -> Path:
     """Export beside `path`, which is not touched yet: `*.part.onnx`, to be checked and renamed. The first axis may be of any length."""
     part = path.with_suffix(".part.onnx")
     with warnings.catch_warnings():

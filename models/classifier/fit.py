@@ -61,7 +61,9 @@ def fit(network: Trained, crops: Crops, plan: Plan, report: Report) -> Trained:
     averaging = get_ema_multi_avg_fn(plan.average)  # type: ignore[no-untyped-call]
     average = AveragedModel(network, multi_avg_fn=averaging, use_buffers=True)
     optimizer = torch.optim.AdamW(network.parameters(), lr=plan.learning_rate, weight_decay=plan.weight_decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, plan.learning_rate, total_steps=plan.steps, pct_start=0.15)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimizer, plan.learning_rate, total_steps=plan.steps, pct_start=0.15
+    )
     every = max(1, plan.steps // 20)
     half = bool(torch.ops.mkldnn._is_mkldnn_bf16_supported())  # noqa: SLF001 - where the CPU has it, two thirds of the time
     running: list[float] = []
@@ -69,7 +71,10 @@ def fit(network: Trained, crops: Crops, plan: Plan, report: Report) -> Trained:
     channels_last(network)
     for step in range(1, plan.steps + 1):
         if step == plan.steps // 2 and plan.unseen_loss is not None:
-            pools = [pool if kind == OK else _visible(pool, lost, plan.unseen_loss) for kind, pool in enumerate(pools)]
+            pools = [
+                pool if kind == OK else _visible(pool, lost, plan.unseen_loss)
+                for kind, pool in enumerate(pools)
+            ]
         chosen = torch.from_numpy(_draw(pools, lost, plan, drawn))
         wanted = maps[chosen].float() / 255
         seen, moved = augment(images[chosen][:, None].float(), wanted, rng)
@@ -98,7 +103,9 @@ def _visible(pool: NDArray[np.int64], lost: NDArray[np.float64], unseen_loss: fl
     return seen if seen.size > pool.size // 2 else pool
 
 
-def _draw(pools: list[NDArray[np.int64]], lost: NDArray[np.float64], plan: Plan, rng: np.random.Generator) -> NDArray[np.int64]:
+def _draw(
+    pools: list[NDArray[np.int64]], lost: NDArray[np.float64], plan: Plan, rng: np.random.Generator
+) -> NDArray[np.int64]:
     """Crops of one batch: the kinds by their shares, of each kind the hard ones oftener."""
     kinds = rng.choice(len(pools), plan.batch, p=plan.shares)
     chosen = []
@@ -109,14 +116,22 @@ def _draw(pools: list[NDArray[np.int64]], lost: NDArray[np.float64], plan: Plan,
 
 
 def _loss(
-    answer: tuple[Tensor, Tensor | None, Tensor | None], labels: Tensor, maps: Tensor, mapped: Tensor, kept: Tensor, plan: Plan
+    answer: tuple[Tensor, Tensor | None, Tensor | None],
+    labels: Tensor,
+    maps: Tensor,
+    mapped: Tensor,
+    kept: Tensor,
+    plan: Plan,
 ) -> tuple[Tensor, Tensor]:
     """Mean loss, and the classes' loss of each crop (K,)."""
     logits, where = answer[0].float(), answer[1]
     each = functional.cross_entropy(logits, labels, reduction="none", label_smoothing=plan.smoothing) * kept
     if where is None:
         return each.mean(), each.detach()
-    cells = functional.binary_cross_entropy_with_logits(where.float(), maps, reduction="none").mean(dim=(1, 2, 3)) * mapped
+    cells = (
+        functional.binary_cross_entropy_with_logits(where.float(), maps, reduction="none").mean(dim=(1, 2, 3))
+        * mapped
+    )
     return each.mean() + plan.map_weight * cells.mean(), each.detach()
 
 
@@ -126,4 +141,6 @@ def predict(network: WeldNet, images: NDArray[np.uint8]) -> tuple[NDArray[np.flo
     with torch.no_grad():
         answers = [network(chunk[:, None]) for chunk in torch.split(torch.from_numpy(images), 128)]
     scores = torch.cat([torch.softmax(logits, dim=1) for logits, _, _ in answers])
-    return np.asarray(scores.numpy(), np.float64), np.asarray(torch.cat([f for _, _, f in answers]).numpy(), np.float64)
+    return np.asarray(scores.numpy(), np.float64), np.asarray(
+        torch.cat([f for _, _, f in answers]).numpy(), np.float64
+    )

@@ -33,7 +33,9 @@ class _Mix(nn.Module):
 
     def __init__(self, channels: int, size: int) -> None:
         super().__init__()
-        self.branch = nn.Sequential(nn.Conv2d(channels, channels, size, padding=size // 2, groups=channels), _Conv(channels, channels))
+        self.branch = nn.Sequential(
+            nn.Conv2d(channels, channels, size, padding=size // 2, groups=channels), _Conv(channels, channels)
+        )
 
     def forward(self, x: Tensor) -> Tensor:
         """Same shape out."""
@@ -85,7 +87,12 @@ class WeldNet(nn.Module):
         sixteenth = self.sixteenth(eighth)
         fine = self.fine(self.up_quarter(self.up_eighth(sixteenth, eighth), quarter))
         where = self.map(fine)
-        ends = [sixteenth.mean(dim=(2, 3)), sixteenth.amax(dim=(2, 3)), fine.mean(dim=(2, 3)), fine.amax(dim=(2, 3))]
+        ends = [
+            sixteenth.mean(dim=(2, 3)),
+            sixteenth.amax(dim=(2, 3)),
+            fine.mean(dim=(2, 3)),
+            fine.amax(dim=(2, 3)),
+        ]
         features = self.feature(torch.cat(ends, dim=1))
         logits = self.classes(torch.cat([features, where.amax(dim=(2, 3))], dim=1))
         return logits, where, torch.cat([_statistics(quarter), _statistics(eighth)], dim=1)

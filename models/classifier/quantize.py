@@ -9,12 +9,18 @@ from typing import Any
 
 import numpy as np
 import onnx
-from onnxruntime.quantization import CalibrationDataReader, CalibrationMethod, QuantFormat, QuantType, quantize_static
+from onnxruntime.quantization import (
+    CalibrationDataReader,
+    CalibrationMethod,
+    QuantFormat,
+    QuantType,
+    quantize_static,
+)
 from onnxruntime.quantization.shape_inference import quant_pre_process
 
 from models.data.crops import OK, Crops
 from models.errors import LearningError
-from models.evaluation.measures import count, refused
+from models.evaluation.measures import count, rejected
 from models.evaluation.scores import class_scores
 from station.classify.onnx import Classifier
 
@@ -25,8 +31,12 @@ LOSS_F2 = 0.003
 
 class _Batches(CalibrationDataReader):  # type: ignore[misc]
     def __init__(self, crops: Crops) -> None:
-        chosen = np.random.default_rng(0).choice(len(crops), min(CALIBRATION_CROPS, len(crops)), replace=False)
-        self._batches: Iterator[dict[str, Any]] = iter([{"crops": crops.images[i : i + 1, None]} for i in chosen])
+        chosen = np.random.default_rng(0).choice(
+            len(crops), min(CALIBRATION_CROPS, len(crops)), replace=False
+        )
+        self._batches: Iterator[dict[str, Any]] = iter(
+            [{"crops": crops.images[i : i + 1, None]} for i in chosen]
+        )
 
     def get_next(self) -> dict[str, Any] | None:
         """One crop, or None at the end."""
@@ -58,9 +68,14 @@ def quantize(path: Path, target: Path, training: Crops, held: Crops) -> dict[str
         if not model.metadata_props:
             model.metadata_props.extend(onnx.load(str(path)).metadata_props)
             onnx.save(model, str(part))
-        f2 = [count(refused(class_scores(Classifier(p), held.images), card.thresholds), held.labels != OK).f2 for p in (path, part)]
+        f2 = [
+            count(rejected(class_scores(Classifier(p), held.images), card.thresholds), held.labels != OK).f2
+            for p in (path, part)
+        ]
         if f2[1] < f2[0] - LOSS_F2:
-            raise LearningError(f"{target}: F2 falls from {f2[0]:.4f} to {f2[1]:.4f} in 8 bits; nothing kept, use the float32 file")
+            raise LearningError(
+                f"{target}: F2 falls from {f2[0]:.4f} to {f2[1]:.4f} in 8 bits; nothing kept, use the float32 file"
+            )
         os.replace(part, target)
     finally:
         for path_left in (prepared, part):

@@ -16,10 +16,26 @@ from models.classifier.fit import Plan, Report, fit, predict
 from models.classifier.network import WeldNet
 from models.classifier.novelty import describe, distances, limit, part_distances
 from models.data.crops import DEFECTS, OK, Crops, only
-from models.data.labelled import WINDOW_STEP_PX, data_hash, read_lot, split_by_part, station_crops, window_crops
+from models.data.labelled import (
+    WINDOW_STEP_PX,
+    data_hash,
+    read_lot,
+    split_by_part,
+    station_crops,
+    window_crops,
+)
 from models.data.rendered import read_rendered
 from models.errors import LearningError
-from models.evaluation.measures import ESCAPE_COST, calibration_error, choose_thresholds, count, line_weights, prior_shift, refused, shifted
+from models.evaluation.measures import (
+    ESCAPE_COST,
+    calibration_error,
+    choose_thresholds,
+    count,
+    line_weights,
+    prior_shift,
+    rejected,
+    shifted,
+)
 from models.evaluation.scores import class_scores
 from station.classify.onnx import Classifier
 from station.classify.thresholds import Thresholds
@@ -29,7 +45,9 @@ FINE_TUNED = "Fine-tuned on a line's own labelled images, those of other parts h
 FINE_TUNING = Plan(steps=600, learning_rate=0.0005, hardness=0.0, unseen_loss=None)
 
 
-def train(folders: Sequence[Path], out: Path, version: str, plan: Plan, kinds: Sequence[int], report: Report) -> dict[str, Any]:
+def train(
+    folders: Sequence[Path], out: Path, version: str, plan: Plan, kinds: Sequence[int], report: Report
+) -> dict[str, Any]:
     """Train on rendered datasets; with one of `kinds` alone, OK crops against those with that defect.
 
     Writes weldgate.onnx, run.json and CARD.md into `out` and returns the card. Raises LearningError.
@@ -46,7 +64,9 @@ def train(folders: Sequence[Path], out: Path, version: str, plan: Plan, kinds: S
     return release(network, training, held, out, version, digest, plan, perf_counter() - start, RENDERED)
 
 
-def fine_tune(lot: Path, model: Path | None, out: Path, version: str, seed: int, report: Report) -> dict[str, Any]:
+def fine_tune(
+    lot: Path, model: Path | None, out: Path, version: str, seed: int, report: Report
+) -> dict[str, Any]:
     """The paper's protocol for a line's own labelled images (section 3.2): window of 10 px, balanced, 70/15/15 % by part.
 
     With `model` its network is trained further, without one a new network. The thresholds are chosen on the validation parts; the
@@ -54,14 +74,20 @@ def fine_tune(lot: Path, model: Path | None, out: Path, version: str, seed: int,
     """
     train_strips, validation_strips, test_strips = split_by_part(read_lot(lot), seed)
     training = window_crops(train_strips, WINDOW_STEP_PX, np.random.default_rng(seed))
-    plan = replace(FINE_TUNING, seed=seed) if model is not None else Plan(steps=2000, unseen_loss=None, seed=seed)
+    plan = (
+        replace(FINE_TUNING, seed=seed)
+        if model is not None
+        else Plan(steps=2000, unseen_loss=None, seed=seed)
+    )
     torch.manual_seed(seed)
     start = perf_counter()
     network = fit(WeldNet() if model is None else read_network(model), training, plan, report)
     seconds = perf_counter() - start
     validation = window_crops(validation_strips, WINDOW_STEP_PX, None)
     judged = station_crops(test_strips)
-    return release(network, training, validation, out, version, data_hash([lot]), plan, seconds, FINE_TUNED, judged)
+    return release(
+        network, training, validation, out, version, data_hash([lot]), plan, seconds, FINE_TUNED, judged
+    )
 
 
 def release(
@@ -84,7 +110,11 @@ def release(
     mean, whitening = describe(predict(network, training.images)[1])
     novelty_limit = limit(part_distances(distances(held_statistics, mean, whitening), held.parts))
     out.mkdir(parents=True, exist_ok=True)
-    export(network, out / "weldgate.onnx", Contract(version, digest, thresholds, mean, whitening, novelty_limit, shift))
+    export(
+        network,
+        out / "weldgate.onnx",
+        Contract(version, digest, thresholds, mean, whitening, novelty_limit, shift),
+    )
     crops = held if judged is None else judged
     card: dict[str, Any] = {
         "version": version,
@@ -95,7 +125,9 @@ def release(
         "held_out_crops": len(crops),
         "weights": sum(p.numel() for p in network.parameters()),
         "thresholds": {limit.kind.name: limit.threshold for limit in thresholds.kinds},
-        "held_out": figures(class_scores(Classifier(out / "weldgate.onnx"), crops.images), crops.labels, thresholds),
+        "held_out": figures(
+            class_scores(Classifier(out / "weldgate.onnx"), crops.images), crops.labels, thresholds
+        ),
         "novelty_limit": novelty_limit,
         "seconds": seconds,
         "plan": asdict(plan),
@@ -104,15 +136,19 @@ def release(
     return card
 
 
-def figures(scores: NDArray[np.float64], labels: NDArray[np.int64], thresholds: Thresholds) -> dict[str, float]:
+def figures(
+    scores: NDArray[np.float64], labels: NDArray[np.int64], thresholds: Thresholds
+) -> dict[str, float]:
     """What a card says of scores (N, classes) against labels (N,)."""
     if not len(labels):
         raise LearningError("no crops to judge")
-    found = count(refused(scores, thresholds), labels != OK)
+    found = count(rejected(scores, thresholds), labels != OK)
     return {
         **asdict(found),
         "precision": found.precision,
         "recall": found.recall,
         "f2": found.f2,
-        "calibration_error": calibration_error(1 - scores[:, OK], labels != OK, line_weights(labels, ESCAPE_COST)),
+        "calibration_error": calibration_error(
+            1 - scores[:, OK], labels != OK, line_weights(labels, ESCAPE_COST)
+        ),
     }

@@ -33,7 +33,9 @@ def _move(images: Tensor, maps: Tensor, rng: torch.Generator) -> tuple[Tensor, T
 
     def moved(x: Tensor) -> Tensor:
         grid = functional.affine_grid(theta, [count, 1, *x.shape[2:]], align_corners=False)
-        return functional.grid_sample(x, grid, mode="bilinear", padding_mode="reflection", align_corners=False)
+        return functional.grid_sample(
+            x, grid, mode="bilinear", padding_mode="reflection", align_corners=False
+        )
 
     return moved(images), moved(maps)
 
@@ -72,7 +74,9 @@ def _blur(images: Tensor, rng: torch.Generator) -> Tensor:
     kernel = torch.exp(-0.5 * (at / sigma) ** 2)
     kernel = (kernel / kernel.sum(dim=1, keepdim=True))[:, None, None, :]
     flat = functional.pad(images.reshape(1, count, 128, 128), (5, 5, 5, 5), mode="reflect")
-    flat = functional.conv2d(functional.conv2d(flat, kernel, groups=count), kernel.transpose(2, 3), groups=count)
+    flat = functional.conv2d(
+        functional.conv2d(flat, kernel, groups=count), kernel.transpose(2, 3), groups=count
+    )
     return flat.reshape(count, 1, 128, 128)
 
 
@@ -83,6 +87,10 @@ def _expose(images: Tensor, rng: torch.Generator) -> Tensor:
     gamma = torch.exp(_uniform(-0.4, 0.4, (count, 1, 1, 1), rng))
     images = 255 * (images * gain / 255).clamp(1e-4, 1) ** gamma
     fine = torch.randn(images.shape, generator=rng)
-    wide = functional.interpolate(torch.randn((count, 1, 64, 64), generator=rng), scale_factor=2.0, mode="nearest")
-    noise = fine * _uniform(0, 5, (count, 1, 1, 1), rng) + wide * _uniform(0, 4, (count, 1, 1, 1), rng) * _sometimes(0.3, count, rng)
+    wide = functional.interpolate(
+        torch.randn((count, 1, 64, 64), generator=rng), scale_factor=2.0, mode="nearest"
+    )
+    noise = fine * _uniform(0, 5, (count, 1, 1, 1), rng) + wide * _uniform(
+        0, 4, (count, 1, 1, 1), rng
+    ) * _sometimes(0.3, count, rng)
     return (images + noise * _sometimes(0.5, count, rng)).round().clamp(0, 255)

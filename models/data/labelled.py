@@ -63,7 +63,9 @@ def label_of_arc(defects: Sequence[Defect], start_deg: float, end_deg: float) ->
     return IGNORED if shown is None else CLASSES.index(shown)
 
 
-def frames(folder: Path, items: Sequence[dict[str, Any]]) -> Iterator[tuple[dict[str, Any], NDArray[np.uint8]]]:
+def frames(
+    folder: Path, items: Sequence[dict[str, Any]]
+) -> Iterator[tuple[dict[str, Any], NDArray[np.uint8]]]:
     """Entries of a lot with their images (H, W) uint8, read as the station reads them.
 
     Raises LearningError at the end, listing all that are not readable.
@@ -105,7 +107,9 @@ def window_crops(strips: Sequence[LabelledStrip], step_px: int, rng: np.random.G
     """Crops by a window that slides over each strip; with `rng` the kinds are balanced as in the paper: the rarer kinds
     of defect are repeated to the number of the most frequent one, the OK crops are cut down to the number of all (repeated if fewer)."""
     places = [
-        (i, c, strip.crop_label(c)) for i, strip in enumerate(strips) for c in range(0, STRIP_COLUMNS - STRIP_COLUMNS % step_px, step_px)
+        (i, c, strip.crop_label(c))
+        for i, strip in enumerate(strips)
+        for c in range(0, STRIP_COLUMNS - STRIP_COLUMNS % step_px, step_px)
     ]
     labels = np.array([label for _, _, label in places])
     chosen = np.flatnonzero(labels != IGNORED)
@@ -122,7 +126,11 @@ def window_crops(strips: Sequence[LabelledStrip], step_px: int, rng: np.random.G
 
 def station_crops(strips: Sequence[LabelledStrip]) -> Crops:
     """The 21 crops of each strip as the station cuts them, those whose label is open left out."""
-    places = [(i, c, s.crop_label(c)) for i, s in enumerate(strips) for c in range(0, SEGMENTS * SEGMENT_PX, SEGMENT_PX)]
+    places = [
+        (i, c, s.crop_label(c))
+        for i, s in enumerate(strips)
+        for c in range(0, SEGMENTS * SEGMENT_PX, SEGMENT_PX)
+    ]
     return _cut(strips, [p for p in places if p[2] != IGNORED])
 
 
@@ -136,17 +144,23 @@ def _cut(strips: Sequence[LabelledStrip], places: Sequence[tuple[int, int, int]]
         maps=empty_maps(len(places)),
         mapped=np.zeros(len(places), bool),
         parts=np.array([strips[i].part for i, _, _ in places], np.str_),
-        names=np.array([f"{strips[i].part}, {c * 360 / STRIP_COLUMNS:.0f} degrees" for i, c, _ in places], np.str_),
+        names=np.array(
+            [f"{strips[i].part}, {c * 360 / STRIP_COLUMNS:.0f} degrees" for i, c, _ in places], np.str_
+        ),
     )
 
 
 def _resampled(pool: NDArray[np.int64], count: int, rng: np.random.Generator) -> NDArray[np.int64]:
     if count <= pool.size:
         return np.asarray(rng.choice(pool, count, replace=False), np.int64)
-    return np.concatenate([np.tile(pool, count // pool.size), rng.choice(pool, count % pool.size, replace=False)])
+    return np.concatenate(
+        [np.tile(pool, count // pool.size), rng.choice(pool, count % pool.size, replace=False)]
+    )
 
 
-def split_by_part(strips: Sequence[LabelledStrip], seed: int) -> tuple[list[LabelledStrip], list[LabelledStrip], list[LabelledStrip]]:
+def split_by_part(
+    strips: Sequence[LabelledStrip], seed: int
+) -> tuple[list[LabelledStrip], list[LabelledStrip], list[LabelledStrip]]:
     """Training, validation and test strips, 70/15/15 %: all strips of one part on one side, each side with its share of defects.
 
     Raises LearningError if there are too few parts.
@@ -174,13 +188,17 @@ def read_labels(folder: Path) -> list[dict[str, Any]]:
         labels = json.loads(path.read_text(encoding="utf-8"))["frames"]
         named = [(str(item["frame"]), item) for item in labels]
     except FileNotFoundError:
-        raise LearningError(f"{path}: no such file; render a lot first with weldgate-synth part --out {folder}") from None
+        raise LearningError(
+            f"{path}: no such file; render a lot first with weldgate-synth part --out {folder}"
+        ) from None
     except (ValueError, KeyError, TypeError):
         raise LearningError(f"{path}: not a labels file") from None
     if not named:
         raise LearningError(f"{path}: names no image")
     wrong = [f"{name}: {problem}" for name, item in named if (problem := _problem(item))]
-    wrong += [f"{name}: the image is missing" for name, _ in named if not (folder / "frames" / name).is_file()]
+    wrong += [
+        f"{name}: the image is missing" for name, _ in named if not (folder / "frames" / name).is_file()
+    ]
     seen: set[str] = set()
     wrong += [f"{name}: labelled twice" for name, _ in named if name in seen or seen.add(name)]  # type: ignore[func-returns-value]
     if wrong:
@@ -209,7 +227,9 @@ def _problem(item: dict[str, Any]) -> str | None:
             if _name_of(defect) not in LABELS:
                 return f"unknown kind {defect['kind']}; known: {', '.join(LABELS)}"
             if not 0 <= float(end) - float(start) <= 360:
-                return f"angle_deg {defect['angle_deg']} must be [start, end], end 0 to 360 degrees after start"
+                return (
+                    f"angle_deg {defect['angle_deg']} must be [start, end], end 0 to 360 degrees after start"
+                )
         if item["verdict"] not in ("OK", "NOK") or (item["verdict"] == "NOK") != bool(item["defects"]):
             return f"verdict {item['verdict']} does not fit {len(item['defects'])} defects"
     except (KeyError, ValueError, TypeError) as error:
@@ -223,4 +243,7 @@ def _name_of(defect: dict[str, Any]) -> str:
 
 def defects_of(item: dict[str, Any]) -> tuple[Defect, ...]:
     """Defects of one labelled part."""
-    return tuple(Defect(LABELS[_name_of(d)], float(d["angle_deg"][0]), float(d["angle_deg"][1])) for d in item["defects"])
+    return tuple(
+        Defect(LABELS[_name_of(d)], float(d["angle_deg"][0]), float(d["angle_deg"][1]))
+        for d in item["defects"]
+    )

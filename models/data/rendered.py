@@ -27,13 +27,17 @@ def read_rendered(folders: Sequence[Path]) -> tuple[Crops, Crops, str]:
     for folder in folders:
         entries = _entries(folder)
         for split in SPLITS:
-            sides[split].append(_read(folder, [e for e in entries if e["file"].startswith(f"images/{split}/")]))
+            sides[split].append(
+                _read(folder, [e for e in entries if e["file"].startswith(f"images/{split}/")])
+            )
         digest.update("".join(f"{e['file']} {e['sha256']}\n" for e in entries).encode())
     training, held = (join(sides[split]) for split in SPLITS)
     for split, crops in zip(SPLITS, (training, held), strict=True):
         lacking = [name for label, name in enumerate(CLASSES) if not crops.count(label)]
         if lacking:
-            raise LearningError(f"{', '.join(map(str, folders))}: images/{split} shows no {', '.join(lacking)}; render more crops")
+            raise LearningError(
+                f"{', '.join(map(str, folders))}: images/{split} shows no {', '.join(lacking)}; render more crops"
+            )
     return training, held, digest.hexdigest()
 
 
@@ -41,12 +45,22 @@ def _entries(folder: Path) -> list[dict[str, Any]]:
     path = folder / "manifest.json"
     try:
         entries = json.loads(path.read_text(encoding="utf-8"))["images"]
-        listing = [{"file": str(e["file"]), "kind": str(e["kind"]), "sha256": str(e["sha256"]), **e} for e in entries]
+        listing = [
+            {"file": str(e["file"]), "kind": str(e["kind"]), "sha256": str(e["sha256"]), **e} for e in entries
+        ]
     except FileNotFoundError:
-        raise LearningError(f"{path}: no such file; make or finish a dataset with weldgate-synth dataset --out {folder}") from None
+        raise LearningError(
+            f"{path}: no such file; make or finish a dataset with weldgate-synth dataset --out {folder}"
+        ) from None
     except (ValueError, KeyError, TypeError):
-        raise LearningError(f"{path}: not the manifest of a dataset; make one with weldgate-synth dataset") from None
-    wrong = [f"{e['file']}: the manifest calls it {e['kind']}" for e in listing if e["kind"] != Path(e["file"]).parent.name]
+        raise LearningError(
+            f"{path}: not the manifest of a dataset; make one with weldgate-synth dataset"
+        ) from None
+    wrong = [
+        f"{e['file']}: the manifest calls it {e['kind']}"
+        for e in listing
+        if e["kind"] != Path(e["file"]).parent.name
+    ]
     wrong += [f"{e['file']}: unknown kind" for e in listing if e["kind"] not in CLASSES]
     wrong += [f"{e['file']}: missing" for e in listing if not (folder / e["file"]).is_file()]
     known = {e["file"] for e in listing}
@@ -68,7 +82,9 @@ def _read(folder: Path, entries: list[dict[str, Any]]) -> Crops:
             wrong.append(f"{entry['file']}: not a readable image")
         elif image.shape != (SEGMENT_PX, SEGMENT_PX) or image.dtype != np.uint8:
             size = " x ".join(map(str, image.shape[1::-1]))
-            wrong.append(f"{entry['file']}: {size} px {image.dtype}, needed {SEGMENT_PX} x {SEGMENT_PX} px uint8, one channel")
+            wrong.append(
+                f"{entry['file']}: {size} px {image.dtype}, needed {SEGMENT_PX} x {SEGMENT_PX} px uint8, one channel"
+            )
         elif hashlib.sha256(content).hexdigest() != entry["sha256"]:
             wrong.append(f"{entry['file']}: differs from the manifest")
         else:
@@ -76,7 +92,9 @@ def _read(folder: Path, entries: list[dict[str, Any]]) -> Crops:
             for defect in entry["defects"]:
                 if defect["kind"] in CHANNELS:
                     channel = CHANNELS.index(defect["kind"])
-                    maps[index, channel] = np.maximum(maps[index, channel], coarse(_mask(defect["polygon_px"])))
+                    maps[index, channel] = np.maximum(
+                        maps[index, channel], coarse(_mask(defect["polygon_px"]))
+                    )
     if wrong:
         raise LearningError(listed(folder, wrong))
     return Crops(

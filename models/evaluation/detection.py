@@ -51,7 +51,9 @@ def boxes(maps: Map, probabilities: Mapping[DefectKind, float]) -> list[Box]:
     for values, (kind, probability) in zip(maps, probabilities.items(), strict=True):
         padded = np.pad(values, ((0, 0), (PAD, PAD)))
         for extent in extents(padded, kind.joins_mm * 1000 / UM_PER_PX):
-            left, right = (float(np.clip(v - PAD * CELL_PX, 0, MAX_SIDE)) for v in (extent.start_px, extent.end_px))
+            left, right = (
+                float(np.clip(v - PAD * CELL_PX, 0, MAX_SIDE)) for v in (extent.start_px, extent.end_px)
+            )
             top, bottom = (float(np.clip(v, 0, MAX_SIDE)) for v in (extent.top_px, extent.bottom_px))
             if right > left and bottom > top:
                 score = extent.peak * probability
@@ -59,7 +61,9 @@ def boxes(maps: Map, probabilities: Mapping[DefectKind, float]) -> list[Box]:
     return found
 
 
-def evaluate_boxes(folders: Sequence[Path], held: Crops, classifier: Classifier, kinds: Sequence[int]) -> Detection:
+def evaluate_boxes(
+    folders: Sequence[Path], held: Crops, classifier: Classifier, kinds: Sequence[int]
+) -> Detection:
     """Boxes of the held-out crops of rendered datasets against their `coco_val.json`; `kinds` are the classes looked for."""
     from pycocotools.cocoeval import COCOeval
 
@@ -110,10 +114,14 @@ def _truth(folders: Sequence[Path]) -> Any:
             try:
                 one = COCO(str(folder / "coco_val.json"))
             except (OSError, ValueError) as error:
-                raise LearningError(f"{folder / 'coco_val.json'}: not readable ({error}); make the dataset again") from None
+                raise LearningError(
+                    f"{folder / 'coco_val.json'}: not readable ({error}); make the dataset again"
+                ) from None
         first = len(images)
         categories = one.dataset["categories"]
-        images += [{**i, "id": i["id"] + first, "path": str(folder / i["file_name"])} for i in one.dataset["images"]]
+        images += [
+            {**i, "id": i["id"] + first, "path": str(folder / i["file_name"])} for i in one.dataset["images"]
+        ]
         annotations += [{**a, "image_id": a["image_id"] + first} for a in one.dataset["annotations"]]
     joined = COCO()
     joined.dataset = {

@@ -79,7 +79,12 @@ DRIFTS: dict[str, Callable[[Strip, float, np.random.Generator], Strip]] = {
 }
 
 
-def drift(lot: Path, classifier: Classifier, reference: Reference | None, progress: Callable[[], None] = lambda: None) -> list[Step]:
+def drift(
+    lot: Path,
+    classifier: Classifier,
+    reference: Reference | None,
+    progress: Callable[[], None] = lambda: None,
+) -> list[Step]:
     """Judge a lot under each drift at each strength; without a reference no drift is watched for. Raises LearningError."""
     strips = read_lot(lot)
     limits = classifier.card.thresholds
@@ -144,5 +149,11 @@ def write_drift(steps: list[Step], out: Path) -> None:
         for s in steps
     ]
     (out / "drift.json").write_text(json.dumps(rows, indent=1) + "\n")
-    named = {name: ([s.segments.f2 for s in steps if s.drift == name], [s.alarms for s in steps if s.drift == name]) for name in DRIFTS}
+    named = {
+        name: (
+            [s.segments.f2 for s in steps if s.drift == name],
+            [s.alarms for s in steps if s.drift == name],
+        )
+        for name in DRIFTS
+    }
     (out / "drift.png").write_bytes(drift_curves(STRENGTHS, named))

@@ -21,10 +21,20 @@ def curves(nok: Array, truth: NDArray[np.bool_], escape_cost: float) -> bytes:
     figure, axes = _canvas(2, 2, (9.0, 7.2))
     fpr, tpr, _ = roc_curve(truth, nok)
     axes[0].plot(fpr, tpr, color=BLUE)
-    axes[0].set(xlabel="false rejects, share of OK crops", ylabel="recall", title=f"ROC, area {auc(fpr, tpr):.4f}", xlim=(-0.005, 0.3))
+    axes[0].set(
+        xlabel="false rejects, share of OK crops",
+        ylabel="recall",
+        title=f"ROC, area {auc(fpr, tpr):.4f}",
+        xlim=(-0.005, 0.3),
+    )
     precision, recall, _ = precision_recall_curve(truth, nok)
     axes[1].plot(recall, precision, color=BLUE)
-    axes[1].set(xlabel="recall", ylabel="precision", title=f"precision and recall, area {auc(recall, precision):.4f}", ylim=(0.5, 1.02))
+    axes[1].set(
+        xlabel="recall",
+        ylabel="precision",
+        title=f"precision and recall, area {auc(recall, precision):.4f}",
+        ylim=(0.5, 1.02),
+    )
     bins = np.linspace(0, 1, 31)
     axes[2].hist(nok[~truth], bins, color=BLUE, alpha=0.8, label=f"{int((~truth).sum())} OK")
     axes[2].hist(nok[truth], bins, color=RED, alpha=0.7, label=f"{int(truth.sum())} NOK")
@@ -35,15 +45,23 @@ def curves(nok: Array, truth: NDArray[np.bool_], escape_cost: float) -> bytes:
     axes[3].plot([0, 1], [0, 1], color=GREY, linewidth=1)
     weights = np.where(truth, escape_cost, 1.0)
     shares = [np.average(truth[at == b], weights=weights[at == b]) for b in filled]
-    axes[3].plot([np.average(nok[at == b], weights=weights[at == b]) for b in filled], shares, "o-", color=BLUE)
-    axes[3].set(xlabel="score of NOK", ylabel=f"share that is NOK, each x {escape_cost:g}", title="calibration")
+    axes[3].plot(
+        [np.average(nok[at == b], weights=weights[at == b]) for b in filled], shares, "o-", color=BLUE
+    )
+    axes[3].set(
+        xlabel="score of NOK", ylabel=f"share that is NOK, each x {escape_cost:g}", title="calibration"
+    )
     return _png(figure)
 
 
-def drift_curves(strength: Sequence[float], named: Mapping[str, tuple[Sequence[float], Sequence[float]]]) -> bytes:
+def drift_curves(
+    strength: Sequence[float], named: Mapping[str, tuple[Sequence[float], Sequence[float]]]
+) -> bytes:
     """PNG, one panel a drift: F2 and the share of parts with the alarm against the drift's strength."""
     columns = min(3, len(named))
-    figure, axes = _canvas(-(-len(named) // columns), columns, (4.2 * columns, 3.4 * -(-len(named) // columns)))
+    figure, axes = _canvas(
+        -(-len(named) // columns), columns, (4.2 * columns, 3.4 * -(-len(named) // columns))
+    )
     for axis, (name, (f2, alarm)) in zip(axes, named.items(), strict=False):
         axis.plot(strength, f2, "o-", color=BLUE, label="F2 of the segments")
         axis.plot(strength, alarm, "s--", color=RED, label="parts with the alarm")

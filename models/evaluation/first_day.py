@@ -32,7 +32,11 @@ class FirstDay:
     @property
     def good(self) -> bool:
         """Whether production may begin: all parts judged, none refused, none unlike the training images."""
-        return not self.not_judged and bool((self.room < 1).all() and (self.novelty <= self.limit).all()) and len(self.names) > 0
+        return (
+            not self.not_judged
+            and bool((self.room < 1).all() and (self.novelty <= self.limit).all())
+            and len(self.names) > 0
+        )
 
     def lines(self) -> list[str]:
         """For people."""
@@ -41,13 +45,17 @@ class FirstDay:
         for factor in FACTORS if total else ():
             refused = int((self.room >= factor).sum())
             low, high = interval(refused, total)
-            answer.append(f"thresholds x {factor:.1f}: {refused} refused, {refused / total:.1%} (95 %: {low:.1%} to {high:.1%})")
+            answer.append(
+                f"thresholds x {factor:.1f}: {refused} refused, {refused / total:.1%} (95 %: {low:.1%} to {high:.1%})"
+            )
         if total:
             seen = f"median {np.median(self.novelty):.2f}, worst {self.novelty.max():.2f}, limit {self.limit:.2f}"
             answer.append(f"distance to the training images: {seen}")
         for name, room, novelty in zip(self.names, self.room, self.novelty, strict=True):
             if room >= 1:
-                answer.append(f"{name}: refused; look at it: a defect, or a surface the network does not know")
+                answer.append(
+                    f"{name}: refused; look at it: a defect, or a surface the network does not know"
+                )
             if novelty > self.limit:
                 answer.append(
                     f"{name}: unlike the training images (distance {novelty:.2f}); check light, focus and surface, or render such parts"
@@ -57,7 +65,9 @@ class FirstDay:
         return answer
 
 
-def first_day(paths: Sequence[Path], inspector: Inspector, limit: float, progress: Callable[[], None] = lambda: None) -> FirstDay:
+def first_day(
+    paths: Sequence[Path], inspector: Inspector, limit: float, progress: Callable[[], None] = lambda: None
+) -> FirstDay:
     """Judge images of parts known to be OK. Raises ImageError."""
     names, room, novelty, failed, looks = [], [], [], [], []
     thresholds = inspector.thresholds
@@ -67,7 +77,10 @@ def first_day(paths: Sequence[Path], inspector: Inspector, limit: float, progres
             failed.append(f"{path.name}: {judged.reason}")
         else:
             names.append(path.name)
-            over = [max(s.defects[limit.kind] / limit.threshold for limit in thresholds.kinds) for s in judged.scores]
+            over = [
+                max(s.defects[limit.kind] / limit.threshold for limit in thresholds.kinds)
+                for s in judged.scores
+            ]
             room.append(max(1.0, max(over)) if judged.verdict is Verdict.NOK else max(over))
             novelty.append(judged.novelty)
             looks.append(judged.look)

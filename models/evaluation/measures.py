@@ -1,4 +1,4 @@
-"""Figures of merit; positive means NOK. Pure."""
+"""Figures of merit and thresholds from scores and labels; positive means NOK. Pure."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,22 +8,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.data.crops import DEFECTS, OK
+from station.classify.decision import segment_kind
 from station.classify.onnx import CLASSES
 from station.classify.thresholds import Limit, Thresholds
 from station.defects import KINDS
+from station.domain import SegmentScores
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 THRESHOLDS = np.arange(0.2, 0.501, 0.02)
-"""Among which is chosen. 0.5 is where both errors cost the same; far below it a few crops would rule the choice."""
+"""Thresholds to choose from. At 0.5 both errors cost the same; far below it a few crops would decide the choice."""
 
 SWEEPS = 3
 """Rounds over all kinds of defect in which their thresholds are chosen in turns."""
 
+LINE_FRACTIONS = (1.0 - sum(kind.line_fraction for kind in KINDS), *(kind.line_fraction for kind in KINDS))
+"""Fractions of a line's segments that are OK and that show each kind of defect, in the order of `CLASSES`.
+
+Scores are given and thresholds are chosen for them. Half of the training crops are NOK, but hardly any of a
+line's: there a segment is more likely to be OK before it is seen, and there are more OK ones to reject falsely.
+"""
+ESCAPE_COST = 4.0
+"""Number of false rejects that one escape weighs, as in F2 (beta squared): at a score of 0.5 both cost the same."""
+
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Right and wrong decisions."""
+    """Numbers of right and wrong decisions."""
 
     tp: int
     fp: int
@@ -32,7 +43,7 @@ class Counts:
 
     @property
     def precision(self) -> float:
-        """Eq. (7) of the paper; 1 if nothing was refused."""
+        """Eq. (7) of the paper; 1 if nothing was rejected."""
         return self.tp / (self.tp + self.fp) if self.tp + self.fp else 1.0
 
     @property
@@ -48,64 +59,77 @@ class Counts:
 
 
 def count(nok: Flags, truth: Flags) -> Counts:
-    """Counts of decisions (N,) against truths (N,)."""
-    return Counts(int((nok & truth).sum()), int((nok & ~truth).sum()), int((~nok & truth).sum()), int((~nok & ~truth).sum()))
+    """Count decisions (N,) against truths (N,)."""
+    return Counts(
+        tp=int((nok & truth).sum()),
+        fp=int((nok & ~truth).sum()),
+        fn=int((~nok & truth).sum()),
+        tn=int((~nok & ~truth).sum()),
+    )
 
 
-def refused(scores: Array, thresholds: Thresholds) -> Flags:
-    """The station's decision (`station.classify.decision.segment_kind`) on scores (N, classes)."""
-    columns = [CLASSES.index(limit.kind.name) for limit in thresholds.kinds]
-    over = (scores[:, columns] >= [limit.threshold for limit in thresholds.kinds]).any(axis=1)
-    return np.asarray(over | (scores[:, OK] <= scores[:, 1:].max(axis=1)), bool)
+def decided(scores: Array, thresholds: Thresholds) -> NDArray[np.int64]:
+    """Return what the station decides on crops: OK or the label of a kind of defect (N,), from scores (N, classes)."""
+    kinds = [limit.kind for limit in thresholds.kinds]
+    columns = [CLASSES.index(kind.name) for kind in kinds]
+    label = dict(zip(kinds, columns, strict=True))
+    found = np.full(len(scores), OK, np.int64)
+    for row, (ok, *defects) in enumerate(scores[:, [OK, *columns]].tolist()):
+        kind = segment_kind(SegmentScores(ok, dict(zip(kinds, defects, strict=True))), thresholds)
+        if kind is not None:
+            found[row] = label[kind]
+    return found
+
+
+def rejected(scores: Array, thresholds: Thresholds) -> Flags:
+    """Return whether the station rejects crops (N,), from scores (N, classes)."""
+    return decided(scores, thresholds) != OK
 
 
 def calibration_error(nok: Array, truth: Flags, weights: Array | None = None, bins: int = 10) -> float:
-    """Expected calibration error of probabilities of NOK (N,): mean gap between score and share of NOK, weighted by bin."""
+    """Return the expected calibration error of probabilities of NOK (N,).
+
+    This is the mean gap between the probability and the fraction of NOK crops, weighted by bin.
+    """
     weights = np.ones(len(nok)) if weights is None else weights
     at = np.minimum((nok * bins).astype(int), bins - 1)
     gaps = np.bincount(at, weights * nok, bins) - np.bincount(at, weights * truth, bins)
     return float(np.abs(gaps).sum() / max(float(weights.sum()), 1e-12))
 
 
-LINE_SHARES = (1.0 - sum(kind.line_fraction for kind in KINDS), *(kind.line_fraction for kind in KINDS))
-"""Shares of OK and of each kind of defect for which scores are given and thresholds are chosen. Training crops are half NOK, a
-line's hardly ever: there an OK segment is likelier before it is looked at, and there are more of them to refuse wrongly."""
-ESCAPE_COST = 4.0
-"""An escape weighs as many false rejects, as in F2 (beta squared): scores of 0.5 are where both cost the same."""
+def prior_shift(batch_fractions: tuple[float, ...]) -> tuple[float, ...]:
+    """Return what Bayes' rule adds to the logits: from the classes' fractions in training batches to a line's.
 
-
-def prior_shift(batch_shares: tuple[float, ...]) -> tuple[float, ...]:
-    """What Bayes' rule adds to the logits when the classes' shares are those of a line, a NOK segment counting `ESCAPE_COST` times, and
-    not those of the training batches.
-
-    A kind that was not trained keeps its logit.
+    A NOK segment counts `ESCAPE_COST` times. A kind of defect that was not trained keeps its logit.
     """
     costs = (1.0, *(ESCAPE_COST for _ in DEFECTS))
-    pairs = zip(LINE_SHARES, costs, batch_shares, strict=True)
-    return tuple(float(np.log(line * cost / batch)) if batch > 0 else 0.0 for line, cost, batch in pairs)
+    triples = zip(LINE_FRACTIONS, costs, batch_fractions, strict=True)
+    return tuple(float(np.log(line * cost / batch)) if batch > 0 else 0.0 for line, cost, batch in triples)
 
 
 def shifted(scores: Array, shift: tuple[float, ...]) -> Array:
-    """Probabilities (N, classes) after adding `shift` to their logits."""
+    """Return the probabilities (N, classes) after adding `shift` to their logits."""
     weighed = scores * np.exp(shift)
     return np.asarray(weighed / weighed.sum(axis=1, keepdims=True))
 
 
 def line_weights(labels: NDArray[np.int64], escape_cost: float = 1.0) -> Array:
-    """Weights (N,) by which crops stand for a line's, a NOK one `escape_cost` times."""
+    """Return weights (N,) with which crops represent a line's, a NOK one `escape_cost` times."""
     found = np.ones(len(labels))
-    for kind, share in enumerate(LINE_SHARES):
-        found[labels == kind] = share * (1.0 if kind == OK else escape_cost) / max(int((labels == kind).sum()), 1)
+    for label, fraction in enumerate(LINE_FRACTIONS):
+        cost = 1.0 if label == OK else escape_cost
+        found[labels == label] = fraction * cost / max(int((labels == label).sum()), 1)
     return found
 
 
 def choose_thresholds(scores: Array, labels: NDArray[np.int64], beta: float = 2.0) -> Thresholds:
-    """Return the thresholds of all kinds of defect with the best F-beta on a line; of those as good within 0.1 %, the middle one.
+    """Return the thresholds of all kinds of defect with the best F-beta on a line.
 
-    An escape weighs beta squared times a false reject. Limits above 0.5 act as 0.5: what is not likelier OK is rejected. The grid
-    over all kinds is searched kind by kind in turns if there are more than two.
+    Of those as good within 0.1 %, the middle one is taken. An escape weighs beta squared times a false reject.
+    Thresholds above 0.5 act as 0.5: a segment that is not more likely OK is rejected. With more than two kinds of
+    defect the grid is searched kind by kind, in turns.
     """
-    value = _FBeta(scores, labels, beta)
+    value = FBeta(scores, labels, beta)
     if len(DEFECTS) <= 2:
         chosen = _middle_of_best(value, [range(THRESHOLDS.size)] * len(DEFECTS))
     else:
@@ -119,25 +143,31 @@ def choose_thresholds(scores: Array, labels: NDArray[np.int64], beta: float = 2.
     return Thresholds(tuple(Limit(kind, round(float(THRESHOLDS[i]), 3)) for kind, i in pairs))
 
 
-class _FBeta:
-    """F-beta of a line at thresholds that are given by their places in `THRESHOLDS`, one for each kind of defect."""
+class FBeta:
+    """F-beta on a line at thresholds that are given by their places in `THRESHOLDS`, one for each kind of defect."""
 
     def __init__(self, scores: Array, labels: NDArray[np.int64], beta: float) -> None:
         self._over = [scores[:, kind, None] >= THRESHOLDS for kind in DEFECTS]
-        self._sure = scores[:, OK] <= scores[:, 1:].max(axis=1)
+        self._likelier_nok = scores[:, OK] <= scores[:, 1:].max(axis=1)
         self._truth, self._weights, self._beta2 = labels != OK, line_weights(labels), beta**2
 
-    def __call__(self, places: Sequence[int]) -> float:
-        nok = self._sure.copy()
+    def rejected(self, places: Sequence[int]) -> Flags:
+        """Return what `rejected` returns at these thresholds, a hundred times faster: the search asks often."""
+        nok = self._likelier_nok.copy()
         for over, place in zip(self._over, places, strict=True):
             nok |= over[:, place]
+        return nok
+
+    def __call__(self, places: Sequence[int]) -> float:
+        """Return F-beta at these thresholds."""
+        nok = self.rejected(places)
         tp = float((self._weights * (nok & self._truth)).sum())
         fp = float((self._weights * (nok & ~self._truth)).sum())
         fn = float((self._weights * self._truth).sum()) - tp
         return (1 + self._beta2) * tp / ((1 + self._beta2) * tp + self._beta2 * fn + fp)
 
 
-def _middle_of_best(value: _FBeta, places: Sequence[range]) -> list[int]:
+def _middle_of_best(value: FBeta, places: Sequence[range]) -> list[int]:
     """Return the place nearest to the median of those that are as good as the best within 0.1 %."""
     grid = list(product(*places))
     values = np.array([value(place) for place in grid])

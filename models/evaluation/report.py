@@ -48,7 +48,9 @@ def summary(found: Evaluation) -> dict[str, Any]:
             "precision": counts.precision,
             "recall": counts.recall,
             "f2": counts.f2,
-            "calibration_error": calibration_error(1 - found.scores[:, OK], truth, np.where(truth, ESCAPE_COST, 1.0)),
+            "calibration_error": calibration_error(
+                1 - found.scores[:, OK], truth, np.where(truth, ESCAPE_COST, 1.0)
+            ),
             "confusion": _confusion(found),
         }
     }
@@ -59,10 +61,12 @@ def summary(found: Evaluation) -> dict[str, Any]:
 
 
 def _confusion(found: Evaluation) -> dict[str, dict[str, int]]:
-    """Truth to what was said; the kind said is that of the larger probability."""
-    said = np.where(found.nok, 1 + found.scores[:, 1:].argmax(axis=1), OK)
+    """Count the crops by what they show and what was decided."""
     return {
-        name: {other: int(((found.labels == i) & (said == j)).sum()) for j, other in enumerate(CLASSES)} for i, name in enumerate(CLASSES)
+        name: {
+            other: int(((found.labels == i) & (found.decided == j)).sum()) for j, other in enumerate(CLASSES)
+        }
+        for i, name in enumerate(CLASSES)
     }
 
 
@@ -70,7 +74,11 @@ def _parts(found: Evaluation) -> dict[str, Any]:
     escapes, rejects = found.named("NOK", "OK"), found.named("OK", "NOK")
     errors = [f"{p.name} ({p.reason})" for p in found.parts if p.verdict == "ERROR"]
     bad, good = (sum(p.truth == t for p in found.parts) for t in ("NOK", "OK"))
-    rings = [(p.center_error_px, p.radius_error_px) for p in found.parts if p.center_error_px is not None and p.radius_error_px is not None]
+    rings = [
+        (p.center_error_px, p.radius_error_px)
+        for p in found.parts
+        if p.center_error_px is not None and p.radius_error_px is not None
+    ]
     answer = {
         "count": len(found.parts),
         "right": sum(p.truth == p.verdict for p in found.parts),
@@ -86,7 +94,10 @@ def _parts(found: Evaluation) -> dict[str, Any]:
     }
     if rings:
         center, radius = zip(*rings, strict=True)
-        answer |= {"center_error_px": [median(center), max(center)], "radius_error_px": [median(radius), max(radius)]}
+        answer |= {
+            "center_error_px": [median(center), max(center)],
+            "radius_error_px": [median(radius), max(radius)],
+        }
     return answer
 
 
@@ -96,10 +107,21 @@ def _by_size(found: Evaluation) -> list[dict[str, Any]]:
     for kind in CLASSES[1:]:
         for low, high in pairwise(SIZES_MM):
             hits = [
-                d.found for p in found.parts for d in p.defects if d.kind == kind and d.length_mm is not None and low <= d.length_mm < high
+                d.found
+                for p in found.parts
+                for d in p.defects
+                if d.kind == kind and d.length_mm is not None and low <= d.length_mm < high
             ]
             if hits:
-                rows.append({"kind": kind, "from_mm": low, "to_mm": None if high > 1e8 else high, "found": sum(hits), "of": len(hits)})
+                rows.append(
+                    {
+                        "kind": kind,
+                        "from_mm": low,
+                        "to_mm": None if high > 1e8 else high,
+                        "found": sum(hits),
+                        "of": len(hits),
+                    }
+                )
     return rows
 
 
@@ -111,10 +133,14 @@ def lines(found: Evaluation) -> list[str]:
         p = figures["parts"]
         wrong = f"{len(p['escapes'])} escapes, {len(p['false_rejects'])} false rejects, {len(p['not_judged'])} not judged"
         answer.append(f"{p['count']} parts: {p['right']} right, {wrong}")
-        answer.append(f"95 % intervals: escapes {_percent(p['escape_rate_95'])}, false rejects {_percent(p['false_reject_rate_95'])}")
+        answer.append(
+            f"95 % intervals: escapes {_percent(p['escape_rate_95'])}, false rejects {_percent(p['false_reject_rate_95'])}"
+        )
         if "center_error_px" in p:
             (a, b), (c, d) = p["center_error_px"], p["radius_error_px"]
-            answer.append(f"ring, median and worst error: centre {a:.2f}, {b:.2f} px; radius {c:.2f}, {d:.2f} px")
+            answer.append(
+                f"ring, median and worst error: centre {a:.2f}, {b:.2f} px; radius {c:.2f}, {d:.2f} px"
+            )
     s = figures["segments"]
     answer.append(
         f"segments: precision {s['precision']:.3f}, recall {s['recall']:.3f}, F2 {s['f2']:.3f} ({s['fn']} missed, {s['fp']} false)"
@@ -124,7 +150,11 @@ def lines(found: Evaluation) -> list[str]:
         p = figures["parts"]
         if p["reported_as_novel"]:
             answer.append(f"{p['reported_as_novel']} parts look unlike the training images")
-        for title, key in (("escaped", "escapes"), ("falsely refused", "false_rejects"), ("not judged", "not_judged")):
+        for title, key in (
+            ("escaped", "escapes"),
+            ("falsely refused", "false_rejects"),
+            ("not judged", "not_judged"),
+        ):
             if p[key]:
                 answer.append(f"{title}: {', '.join(p[key])}")
     return answer
@@ -161,7 +191,11 @@ def _page(found: Evaluation, figures: dict[str, Any], title: str, facts: dict[st
 
 
 def _span(row: dict[str, Any]) -> str:
-    return f"from {row['from_mm']:g} mm" if row["to_mm"] is None else f"{row['from_mm']:g} to {row['to_mm']:g} mm"
+    return (
+        f"from {row['from_mm']:g} mm"
+        if row["to_mm"] is None
+        else f"{row['from_mm']:g} to {row['to_mm']:g} mm"
+    )
 
 
 def _base64(content: bytes) -> str:

@@ -1,4 +1,4 @@
-"""Scores of many crops through the file and the station's reader."""
+"""Scores of many crops, from a classifier's file through the station's own reader."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,11 @@ BATCH = 256
 
 
 def class_scores(classifier: Classifier, images: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """Return probabilities (N, classes) of crops (N, 128, 128) uint8, the columns in the order of `CLASSES`. Raises ModelError."""
+    """Return probabilities (N, classes) of crops (N, 128, 128) uint8, columns as in `CLASSES`. Raises ModelError."""
     batches = (classifier(images[i : i + BATCH]).scores for i in range(0, len(images), BATCH))
     return np.array([row_of(scores) for batch in batches for scores in batch])
 
 
 def row_of(scores: SegmentScores) -> tuple[float, ...]:
-    """Return the probabilities in the order of `CLASSES`; 0 for kinds of defect that the classifier does not know."""
+    """Return the probabilities in the order of `CLASSES`; 0 for kinds of defect unknown to the classifier."""
     return scores.ok, *(scores.defects.get(kind, 0.0) for kind in KINDS)

@@ -8,7 +8,9 @@ from torch import Tensor, nn
 
 
 class _Conv(nn.Sequential):
-    def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1, groups: int = 1, active: bool = True) -> None:
+    def __init__(
+        self, inputs: int, outputs: int, size: int = 1, stride: int = 1, groups: int = 1, active: bool = True
+    ) -> None:
         super().__init__(
             nn.Conv2d(inputs, outputs, size, stride, size // 2, groups=groups, bias=False),
             nn.BatchNorm2d(outputs),

@@ -58,7 +58,12 @@ def train_paper(folders: Sequence[Path], out: Path, plan: PaperPlan, report: Rep
     out.mkdir(parents=True, exist_ok=True)
     crops = torch.zeros((21, 1, 128, 128), dtype=torch.uint8)
     part = write_onnx(
-        _Binary(network.eval()), crops, out / "paper.onnx", "crops", ("probabilities",), {"weldgate.classes": '["ok", "nok"]'}
+        _Binary(network.eval()),
+        crops,
+        out / "paper.onnx",
+        "crops",
+        ("probabilities",),
+        {"weldgate.classes": '["ok", "nok"]'},
     )
     part.replace(out / "paper.onnx")
     found = count(paper_scores(out / "paper.onnx", held.images) >= 0.5, held.labels != OK)
@@ -78,7 +83,10 @@ def train_paper(folders: Sequence[Path], out: Path, plan: PaperPlan, report: Rep
 def paper_scores(path: Path, images: NDArray[np.uint8]) -> NDArray[np.float64]:
     """Probability of NOK (N,) of crops (N, 128, 128) through a file of this protocol. Raises ModelError."""
     network = Network(path)
-    chunks = [network.run(("probabilities",), {"crops": images[i : i + BATCH, None]})[0] for i in range(0, len(images), BATCH)]
+    chunks = [
+        network.run(("probabilities",), {"crops": images[i : i + BATCH, None]})[0]
+        for i in range(0, len(images), BATCH)
+    ]
     return np.asarray(np.concatenate(chunks)[:, 1], np.float64)
 
 

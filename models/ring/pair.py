@@ -22,13 +22,19 @@ def pair_rings(first: Path, second: Path, out: Path, version: str) -> None:
     networks = [RingNetwork(path) for path in (first, second)]
     loaded = [onnx.load(str(path)) for path in (first, second)]
     parents = [{m.key: m.value for m in model.metadata_props} for model in loaded]
-    a, b = (compose.add_prefix(model, f"{name}/", rename_inputs=False) for name, model in zip("ab", loaded, strict=True))
+    a, b = (
+        compose.add_prefix(model, f"{name}/", rename_inputs=False)
+        for name, model in zip("ab", loaded, strict=True)
+    )
     nodes = [*a.graph.node, *b.graph.node, *_mean()]
     values = [
-        helper.make_tensor(name, TensorProto.FLOAT, [1], [value]) for name, value in (("w", FIRST_WEIGHT), ("half", 0.5), ("e", 1e-6))
+        helper.make_tensor(name, TensorProto.FLOAT, [1], [value])
+        for name, value in (("w", FIRST_WEIGHT), ("half", 0.5), ("e", 1e-6))
     ]
     target = helper.make_tensor_value_info("sectors", TensorProto.FLOAT, ["count", 2, SECTORS])
-    graph = helper.make_graph(nodes, "rings", list(a.graph.input), [target], [*a.graph.initializer, *b.graph.initializer, *values])
+    graph = helper.make_graph(
+        nodes, "rings", list(a.graph.input), [target], [*a.graph.initializer, *b.graph.initializer, *values]
+    )
     model = helper.make_model(graph, opset_imports=list(a.opset_import), ir_version=a.ir_version)
     hashes = [parent.get("weldgate.data_hash", "unknown") for parent in parents]
     out.mkdir(parents=True, exist_ok=True)

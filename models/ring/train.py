@@ -25,11 +25,15 @@ MAX_SHIFT_PX = 14.0
 class _Wrap(nn.Module):
     """A convolution that is periodic along the columns."""
 
-    def __init__(self, inputs: int, outputs: int, size: int, stride: tuple[int, int], dilation: int = 1) -> None:
+    def __init__(
+        self, inputs: int, outputs: int, size: int, stride: tuple[int, int], dilation: int = 1
+    ) -> None:
         super().__init__()
         self.reach = size // 2
         rows = (size // 2) * dilation
-        self.conv = nn.Conv2d(inputs, outputs, size, stride, padding=(rows, 0), dilation=(dilation, 1), bias=False)
+        self.conv = nn.Conv2d(
+            inputs, outputs, size, stride, padding=(rows, 0), dilation=(dilation, 1), bias=False
+        )
         self.norm = nn.BatchNorm2d(outputs)
 
     def forward(self, x: Tensor) -> Tensor:
@@ -101,14 +105,21 @@ def train_ring(lots: list[Path], plan: RingPlan, report: Callable[[str], None]) 
         schedule.step()
         running += float(loss.detach())
         if step % 100 == 0:
-            report(f"step {step}/{plan.steps}: loss {running / 100:.3f}, held out circle error {_error_px(network, kept):.2f} px")
+            report(
+                f"step {step}/{plan.steps}: loss {running / 100:.3f}, held out circle error {_error_px(network, kept):.2f} px"
+            )
             running = 0.0
     return network, _error_px(network, kept)
 
 
 def ring_card(version: str, data_hash: str, plan: RingPlan, error_px: float) -> str:
     """What the file is, for people."""
-    card = {"version": version, "data_hash": data_hash, "held_out_center_error_px_median": round(error_px, 2), "plan": asdict(plan)}
+    card = {
+        "version": version,
+        "data_hash": data_hash,
+        "held_out_center_error_px_median": round(error_px, 2),
+        "plan": asdict(plan),
+    }
     return (
         "# Ring network\n\nWritten by the training run. Rendered images only; the error is that of one pass on bands cut 5 px off centre,\n"
         f"on rendered parts held out from training.\n\n```json\n{json.dumps(card, indent=2)}\n```\n"
@@ -179,7 +190,9 @@ def _relight(band: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.ui
         share = float(rng.uniform(0.3, 1.0))
         blurred = cv2.addWeighted(calm, share, blurred, 1 - share, 0)
     gain, gamma = float(np.exp(rng.uniform(-0.7, 0.7))), float(np.exp(rng.uniform(-0.4, 0.4)))
-    turn = 1 + np.cos(np.linspace(0, 2 * np.pi, band.shape[1]) + rng.uniform(0, 2 * np.pi)) * rng.uniform(0, 0.4)
+    turn = 1 + np.cos(np.linspace(0, 2 * np.pi, band.shape[1]) + rng.uniform(0, 2 * np.pi)) * rng.uniform(
+        0, 0.4
+    )
     relit = 255 * np.clip(blurred.astype(np.float32) * gain / 255, 0, 1) ** gamma * turn[None, :]
     noisy = relit + rng.standard_normal(band.shape, dtype=np.float32) * float(rng.uniform(0, 5))
     return np.asarray(np.clip(noisy, 0, 255), np.uint8)

@@ -4,12 +4,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from models.classifier.novelty import describe, distances, limit, part_distances
-from models.data.crops import OK
-from models.evaluation.measures import Counts, calibration_error, choose_thresholds, count, refused
+from models.data.crops import DEFECTS, OK
+from models.evaluation.measures import (
+    THRESHOLDS,
+    Counts,
+    FBeta,
+    calibration_error,
+    choose_thresholds,
+    count,
+    decided,
+    rejected,
+)
 from station.analysis.truth import interval
 from station.classify.decision import segment_kind
-from tests.models.made import HOLE, MISSING
-from tests.parts import scores_of, thresholds
+from station.classify.onnx import CLASSES
+from station.classify.thresholds import Limit, Thresholds
+from station.defects import KINDS
+from station.domain import SegmentScores
 
 
 def test_the_papers_equations() -> None:
@@ -25,29 +36,51 @@ def test_intervals_hold_the_share_and_narrow_with_trials() -> None:
     assert wide[0] < narrow[0] < 0.1 < narrow[1] < wide[1]
 
 
-SCORE = st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0, 1))
+VALUE = st.sampled_from([0.0, 0.2, 0.3, 0.5, 0.9]) | st.floats(0, 1)
+"""Some values often, so that scores are equal to each other and to thresholds."""
+SCORES = st.lists(st.lists(VALUE, min_size=len(CLASSES), max_size=len(CLASSES)), min_size=1, max_size=20)
 
 
-@given(st.lists(SCORE, min_size=1, max_size=20), st.floats(0.05, 0.9), st.floats(0.05, 0.9))
-def test_the_decision_is_the_stations(raw: list[tuple[float, float, float]], hole: float, gone: float) -> None:
-    scores = np.array(raw)
-    limits = thresholds(hole, gone)
-    wanted = [segment_kind(scores_of(*row), limits) is not None for row in scores.tolist()]
-    assert refused(scores, limits).tolist() == wanted
+@given(SCORES, st.lists(VALUE, min_size=len(KINDS), max_size=len(KINDS)))
+def test_the_decision_is_the_stations(rows: list[list[float]], values: list[float]) -> None:
+    limits = Thresholds(tuple(Limit(kind, value) for kind, value in zip(KINDS, values, strict=True)))
+    kinds = [
+        segment_kind(SegmentScores(row[0], dict(zip(KINDS, row[1:], strict=True))), limits) for row in rows
+    ]
+    assert [CLASSES[label] for label in decided(np.array(rows), limits)] == [
+        "ok" if k is None else k.name for k in kinds
+    ]
+    assert rejected(np.array(rows), limits).tolist() == [kind is not None for kind in kinds]
+
+
+def test_a_file_that_knows_fewer_kinds_decides_among_those() -> None:
+    limits = Thresholds((Limit(KINDS[-1], 0.4),))
+    scores = np.zeros((3, len(CLASSES)))
+    scores[:, [OK, -1]] = [[0.7, 0.3], [0.55, 0.45], [0.4, 0.6]]
+    assert decided(scores, limits).tolist() == [OK, len(KINDS), len(KINDS)]
+
+
+@given(SCORES, st.lists(st.integers(0, THRESHOLDS.size - 1), min_size=len(KINDS), max_size=len(KINDS)))
+def test_the_search_for_thresholds_rejects_as_the_station(rows: list[list[float]], places: list[int]) -> None:
+    scores = np.array(rows)
+    limits = Thresholds(
+        tuple(Limit(kind, float(THRESHOLDS[i])) for kind, i in zip(KINDS, places, strict=True))
+    )
+    search = FBeta(scores, np.zeros(len(rows), np.int64), 2.0)
+    assert search.rejected(places).tolist() == rejected(scores, limits).tolist()
 
 
 def test_thresholds_part_what_can_be_parted() -> None:
     rng = np.random.default_rng(0)
-    labels = rng.choice([OK, HOLE, MISSING], 600, p=[0.6, 0.2, 0.2])
-    scores = np.full((600, 3), 0.05)
+    labels = rng.choice([OK, *DEFECTS], 600)
+    scores = np.full((600, len(CLASSES)), 0.02)
     for index, label in enumerate(labels):
-        bad = rng.uniform(0.3, 0.45) if label else rng.uniform(0.05, 0.2)
-        scores[index, HOLE if label != MISSING else MISSING] = bad
+        scores[index, label or DEFECTS[0]] = rng.uniform(0.3, 0.45) if label else rng.uniform(0.05, 0.2)
     scores[:, OK] = 1 - scores[:, 1:].sum(axis=1)
     limits = choose_thresholds(scores, labels)
-    assert count(refused(scores, limits), labels != OK).f2 == 1.0
+    assert count(rejected(scores, limits), labels != OK).f2 == 1.0
     assert 0.2 < limits.kinds[0].threshold <= 0.3
-    assert limits.kinds[1].threshold <= 0.3
+    assert all(limit.threshold <= 0.3 for limit in limits.kinds)
 
 
 def test_calibration_error_of_honest_and_of_boastful_scores() -> None:
