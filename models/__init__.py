@@ -1,1 +1,1 @@
-"""Learns from recorded or rendered parts; ships one file."""
+"""The learning room: trains, evaluates and releases the networks that the station loads."""

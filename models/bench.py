@@ -1,4 +1,4 @@
-"""21 crops through the shipped classifier beside the paper's network, in turns: `python -m models.bench [FILE …]`."""
+"""Times of the shipped classifier and the paper's network on 21 crops: `python -m models.bench [FILE ...]`"""
 
 import statistics
 import sys
@@ -22,26 +22,31 @@ THREADS = 2
 
 
 class _Plain(nn.Module):
-    """The paper's network as it is usually run: three channels of float32 in, its images prepared outside."""
+    """The paper's network as it usually runs: it takes three channels of float32, prepared outside."""
 
     def __init__(self, network: PaperNet) -> None:
         super().__init__()
         self.network = network
 
     def forward(self, images: Tensor) -> Tensor:
-        """Images (K, 3, 128, 128) to logits."""
+        """Return the logits of images (K, 3, 128, 128)."""
         logits: Tensor = self.network.classes(self.network.features(images).mean(dim=(2, 3)))
         return logits
 
 
 def main() -> None:
-    """Print medians and ratios."""
+    """Measure in turns and print medians and ratios."""
     crops = np.random.default_rng(0).integers(0, 256, (SEGMENTS, SEGMENT_PX, SEGMENT_PX), dtype=np.uint8)
     runs: dict[str, Callable[[], object]] = {}
     with tempfile.TemporaryDirectory() as folder:
         images = torch.zeros((SEGMENTS, 3, SEGMENT_PX, SEGMENT_PX))
         path = write_onnx(
-            _Plain(PaperNet(3).eval()), images, Path(folder) / "paper.onnx", "images", ("logits",), {}
+            _Plain(PaperNet(3).eval()),
+            images,
+            Path(folder) / "paper.onnx",
+            source="images",
+            targets=("logits",),
+            metadata={},
         )
         paper = Network(path, THREADS)
         whole = images.numpy()

@@ -1,4 +1,4 @@
-"""LearningError: a user's mistake in a learning command, said in one line."""
+"""LearningError: a user's mistake in a learning command, reported in one line."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,10 +7,11 @@ SHOWN = 10
 
 
 class LearningError(Exception):
-    """What is wrong, where, and what to do."""
+    """What is wrong, where, and what to do about it."""
 
 
 def listed(folder: Path, wrong: Sequence[str]) -> str:
-    """Message naming what is wrong in a folder, the first ten one by one."""
+    """Return a message on what is wrong in a folder, naming the first ten problems."""
     more = f" and {len(wrong) - SHOWN} more" if len(wrong) > SHOWN else ""
-    return f"{folder}: {len(wrong)} wrong: {'; '.join(wrong[:SHOWN])}{more}; correct them or make the folder again"
+    shown = "; ".join(wrong[:SHOWN])
+    return f"{folder}: {len(wrong)} wrong: {shown}{more}. Correct them, or make the folder again"

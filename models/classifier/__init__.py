@@ -1,1 +1,1 @@
-"""The classifier: its network, how it is trained, and the ONNX file with its model card that the station loads."""
+"""The classifier: its network, its training, and the ONNX file with its model card."""

@@ -1,4 +1,7 @@
-"""Trained networks to ONNX files with their contract in the metadata, and back; kept only if they agree with the networks."""
+"""Trained networks to ONNX files with their contract in the metadata, and back.
+
+A file is kept only if it answers as the network does.
+"""
 
 import copy
 import json
@@ -23,32 +26,32 @@ from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_PX
 
 TOLERANCE = 1e-4
+"""Largest difference between the answers of a file and of what it was made from."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Contract:
-    """What a classifier's file says of itself beside its weights."""
+    """What a classifier's file says about itself in addition to its weights."""
 
     version: str
     data_hash: str
     """SHA-256 of the training images."""
     thresholds: Thresholds
     mean: NDArray[np.float64]
-    """Mean statistics of the training crops (192,)."""
+    """Mean appearance features of the training crops (192,)."""
     whitening: NDArray[np.float64]
-    """(192, 192): statistics minus mean times this have unit covariance over the training crops."""
+    """(192, 192): features minus `mean`, times this, have unit covariance over the training crops."""
     novelty_limit: float
     """Distance of a part to the training images from which it is reported."""
     prior_shift: tuple[float, ...]
-    """Added to the logits of the classes: from the shares of the training batches to those of a line."""
+    """What is added to the classes' logits: from their fractions in training batches to those on a line."""
 
     def metadata(self) -> dict[str, str]:
-        """As in the file."""
+        """Return the metadata of the file."""
+        thresholds = {limit.kind.name: limit.threshold for limit in self.thresholds.kinds}
         return {
             "weldgate.classes": json.dumps(CLASSES),
-            "weldgate.thresholds": json.dumps(
-                {limit.kind.name: limit.threshold for limit in self.thresholds.kinds}
-            ),
+            "weldgate.thresholds": json.dumps(thresholds),
             "weldgate.novelty_limit": json.dumps(self.novelty_limit),
             "weldgate.data_hash": self.data_hash,
             "weldgate.version": self.version,
@@ -56,7 +59,7 @@ class Contract:
 
 
 class Shipped(nn.Module):
-    """The network as the station runs it: probabilities, defect map, statistics of the look, whitened over the training images."""
+    """The network as the station runs it: probabilities, defect map and whitened appearance features."""
 
     def __init__(self, network: WeldNet, prior_shift: tuple[float, ...]) -> None:
         super().__init__()
@@ -66,13 +69,20 @@ class Shipped(nn.Module):
         self.whiten = nn.Linear(STATISTICS, STATISTICS)
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return probabilities (K, classes), map (K, channels, 32, 32) 0..1 and looks (K, 192) of crops (K, 1, 128, 128) uint8."""
+        """Judge crops (K, 1, 128, 128) uint8.
+
+        Returns probabilities (K, classes), maps (K, channels, 32, 32) 0..1 and appearance features (K, 192).
+        """
         logits, where, statistics = self.network(crops)
-        return torch.softmax(logits + self.prior_shift, dim=1), torch.sigmoid(where), self.whiten(statistics)
+        return (
+            torch.softmax(logits + self.prior_shift, dim=1),
+            torch.sigmoid(where),
+            self.whiten(statistics),
+        )
 
 
 def fused(network: WeldNet) -> WeldNet:
-    """A copy whose batch norms are folded into the convolutions: as it is exported, and as it is read back."""
+    """Return a copy with the batch norms folded into the convolutions, as in the file."""
     answer = copy.deepcopy(network).eval()
     for module in answer.modules():
         if isinstance(module, nn.Sequential) and len(module) > 1 and isinstance(module[1], nn.BatchNorm2d):
@@ -82,43 +92,39 @@ def fused(network: WeldNet) -> WeldNet:
 
 
 def export(network: WeldNet, path: Path, contract: Contract) -> None:
-    """Write the classifier. Raises LearningError if the file's answers differ from the network's by more than 1e-4."""
+    """Write the classifier. Raises LearningError if the file and the network answer differently."""
     whole = Shipped(fused(network), contract.prior_shift).eval()
     with torch.no_grad():
         whole.whiten.weight.copy_(torch.from_numpy(contract.whitening.T))
         whole.whiten.bias.copy_(torch.from_numpy(-contract.mean @ contract.whitening))
     crops = torch.from_numpy(example_images((21, 1, SEGMENT_PX, SEGMENT_PX)))
-    part = write_onnx(whole, crops, path, "crops", ("probabilities", "maps", "looks"), contract.metadata())
+    outputs = ("probabilities", "maps", "looks")
+    part = write_onnx(whole, crops, path, source="crops", targets=outputs, metadata=contract.metadata())
     with torch.no_grad():
-        wanted = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
-    got = Classifier(part)(crops.numpy()[:, 0])
-    pairs = zip(
-        wanted,
-        (np.array([(s.ok, *s.defects.values()) for s in got.scores]), got.maps, got.looks),
-        strict=True,
-    )
+        expected = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
+    judged = Classifier(part)(crops.numpy()[:, 0])
+    scores = np.array([(s.ok, *s.defects.values()) for s in judged.scores])
+    pairs = zip(expected, (scores, judged.maps, judged.looks), strict=True)
     keep(part, path, max(largest_gap(a, b) for a, b in pairs))
 
 
 def read_network(path: Path) -> WeldNet:
-    """The network of a classifier file, to train it further. Raises ModelError or LearningError if it is none."""
+    """Read a classifier's network from its file, to train it further.
+
+    Raises ModelError if the file is not a classifier, LearningError if its network is not today's.
+    """
     classes = tuple(limit.kind.name for limit in Classifier(path).card.thresholds.kinds)
     if classes != CLASSES[1:]:
-        raise LearningError(
-            f"{path}: knows {', '.join(classes)}, today's kinds are {', '.join(CLASSES[1:])}; train a new network"
-        )
+        known, today = ", ".join(classes), ", ".join(CLASSES[1:])
+        raise LearningError(f"{path}: knows {known}, today's kinds are {today}. Train a new network")
     network = fused(WeldNet())
-    held = {
-        i.name: torch.from_numpy(numpy_helper.to_array(i).copy())
-        for i in onnx.load(str(path)).graph.initializer
-    }
+    held = {i.name: numpy_helper.to_array(i).copy() for i in onnx.load(str(path)).graph.initializer}
     weights = {name: held.get(f"network.{name}") for name in network.state_dict()}
     lacking = [name for name, value in weights.items() if value is None]
     if lacking:
-        raise LearningError(
-            f"{path}: not a float32 file of this network, it lacks {lacking[0]}; name one made by weldgate-models train"
-        )
-    network.load_state_dict({name: value for name, value in weights.items() if value is not None})
+        hint = "Name one made by weldgate-models train"
+        raise LearningError(f"{path}: not a float32 file of this network, it lacks {lacking[0]}. {hint}")
+    network.load_state_dict({k: torch.from_numpy(value) for k, value in weights.items() if value is not None})
     return network
 
 
@@ -131,11 +137,15 @@ def write_onnx(
     module: nn.Module,
     example: Tensor,
     path: Path,
+    *,
     source: str,
     targets: tuple[str, ...],
     metadata: dict[str, str],
 ) -> Path:
-    """Export beside `path`, which is not touched yet: `*.part.onnx`, to be checked and renamed. The first axis may be of any length."""
+    """Export to `*.part.onnx` next to `path`, to be checked and renamed, and return its path.
+
+    `source` and `targets` name the input and the outputs; their first axis may be of any length.
+    """
     part = path.with_suffix(".part.onnx")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # the tracing exporter needs no further package
@@ -154,20 +164,23 @@ def write_onnx(
 
 
 def save(model: onnx.ModelProto, path: Path, metadata: dict[str, str]) -> None:
-    """Write a graph with what it says of itself."""
+    """Write a graph with its metadata."""
     for key, value in metadata.items():
         entry = model.metadata_props.add()
         entry.key, entry.value = key, value
     onnx.save(model, str(path))
 
 
-def largest_gap(wanted: NDArray[np.float64], got: NDArray[np.floating]) -> float:
-    """Largest difference, as a share of the largest wanted value if that is above 1."""
-    return float(np.abs(wanted - got).max() / max(1.0, np.abs(wanted).max()))
+def largest_gap(expected: NDArray[np.float64], found: NDArray[np.floating]) -> float:
+    """Return the largest difference, as a fraction of the largest expected value if that is above 1."""
+    return float(np.abs(expected - found).max() / max(1.0, np.abs(expected).max()))
 
 
 def keep(part: Path, path: Path, gap: float) -> None:
-    """Let a checked file take its place. Raises LearningError if it differs from what it was made of by more than 1e-4."""
+    """Rename a checked file to `path`.
+
+    Raises LearningError if it differs too much from what it was made from.
+    """
     if not gap <= TOLERANCE:
         part.unlink()
         raise LearningError(f"{path}: the exported file differs from the network by {gap:.2g}; nothing kept")

@@ -1,4 +1,7 @@
-"""The network, normalisation included: uint8 crops in; class logits, a coarse defect map and statistics of its look out."""
+"""The classifier's network, normalisation included.
+
+Takes uint8 crops; returns class logits, a coarse defect map and appearance features.
+"""
 
 import torch
 from torch import Tensor, nn
@@ -7,29 +10,29 @@ from torch.nn import functional
 from station.classify.onnx import CLASSES, MAPPED
 
 FEATURES = 160
-"""Length of the pooled vector that the classes are told from."""
+"""Length of the pooled vector from which the classes are decided."""
 STATISTICS = 2 * (32 + 64)
-"""Length of the vector that tells what an image looks like: mean and deviation of each fine channel, whatever it shows."""
+"""Number of appearance features: mean and standard deviation of each fine channel."""
 
 
 def channels_last(network: nn.Module) -> None:
-    """Lay the weights out so that convolutions take half the time on a CPU."""
+    """Store the weights so that convolutions take half the time on a CPU."""
     network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
 
 
 class _Conv(nn.Sequential):
     """Convolution, batch norm, ReLU: the runtime fuses the three."""
 
-    def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1, groups: int = 1) -> None:
+    def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1) -> None:
         super().__init__(
-            nn.Conv2d(inputs, outputs, size, stride, (size - stride + 1) // 2, groups=groups, bias=False),
+            nn.Conv2d(inputs, outputs, size, stride, (size - stride + 1) // 2, bias=False),
             nn.BatchNorm2d(outputs),
             nn.ReLU(inplace=True),
         )
 
 
 class _Mix(nn.Module):
-    """Residual block: one filter per channel for the surroundings, 1 x 1 for the channels."""
+    """Residual block: a filter per channel over its neighbourhood, then 1 x 1 across the channels."""
 
     def __init__(self, channels: int, size: int) -> None:
         super().__init__()
@@ -38,28 +41,29 @@ class _Mix(nn.Module):
         )
 
     def forward(self, x: Tensor) -> Tensor:
-        """Same shape out."""
+        """Return a tensor of the same shape."""
         answer: Tensor = x + self.branch(x)
         return answer
 
 
 class _Up(nn.Module):
-    """A coarse map, twice as fine, joined with a fine one."""
+    """Doubles the resolution of a coarse map and adds a fine one."""
 
     def __init__(self, coarse: int, fine: int, outputs: int) -> None:
         super().__init__()
         self.coarse, self.fine = nn.Conv2d(coarse, outputs, 1), nn.Conv2d(fine, outputs, 1, bias=False)
 
     def forward(self, coarse: Tensor, fine: Tensor) -> Tensor:
-        """(K, coarse, H, W) and (K, fine, 2H, 2W) to (K, outputs, 2H, 2W)."""
+        """Join (K, coarse, H, W) and (K, fine, 2H, 2W) to (K, outputs, 2H, 2W)."""
         wide = functional.interpolate(self.coarse(coarse), scale_factor=2.0, mode="nearest")
         return functional.relu(wide + self.fine(fine))
 
 
 class WeldNet(nn.Module):
-    """Down to 8 x 8, back up to 32 x 32 for the map; the classes see both ends and the strongest point of the map.
+    """The network: down to 8 x 8, back up to 32 x 32 for the map.
 
-    One network classifies and locates, so that verdict and map come from the same features.
+    The classes are decided from both ends and from the strongest point of the map. One network classifies and
+    locates, so that verdict and map come from the same features.
     """
 
     def __init__(self, classes: int = len(CLASSES), channels: int = len(MAPPED)) -> None:
@@ -75,9 +79,9 @@ class WeldNet(nn.Module):
         self.classes = nn.Sequential(nn.Dropout(0.2), nn.Linear(FEATURES + channels, classes))
 
     def forward(self, crops: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return class logits (K, classes), map logits (K, channels, 32, 32), statistics (K, 192) of crops (K, 1, 128, 128) uint8.
+        """Judge crops (K, 1, 128, 128) uint8, each brought to mean 0 and standard deviation 1.
 
-        Each crop is brought to mean 0 and standard deviation 1.
+        Returns class logits (K, classes), map logits (K, channels, 32, 32) and appearance features (K, 192).
         """
         x = crops.to(torch.float32)
         centred = x - x.mean(dim=(2, 3), keepdim=True)
@@ -99,6 +103,6 @@ class WeldNet(nn.Module):
 
 
 def _statistics(x: Tensor) -> Tensor:
-    """Mean and standard deviation of each channel, (K, 2 C)."""
+    """Return mean and standard deviation of each channel, (K, 2 C)."""
     mean = x.mean(dim=(2, 3))
     return torch.cat([mean, torch.sqrt((x * x).mean(dim=(2, 3)) - mean * mean + 1e-4)], dim=1)

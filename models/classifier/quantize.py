@@ -1,14 +1,18 @@
-"""The classifier's file in 8 bits, kept only if it judges as well; the only file that imports onnxruntime's quantizer."""
+"""The classifier's file in 8 bits, kept only if it judges as well.
+
+The only file that imports onnxruntime's quantizer.
+"""
 
 import contextlib
 import io
 import os
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import onnx
+from numpy.typing import NDArray
 from onnxruntime.quantization import (
     CalibrationDataReader,
     CalibrationMethod,
@@ -26,33 +30,39 @@ from station.classify.onnx import Classifier
 
 CALIBRATION_CROPS = 400
 LOSS_F2 = 0.003
-"""Largest loss of F2 on the held-out crops that is taken for the speed."""
+"""Largest loss of F2 on the held-out crops that is accepted for the speed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantized:
+    """F2 on the held-out crops of both files."""
+
+    float32: float
+    int8: float
 
 
 class _Batches(CalibrationDataReader):  # type: ignore[misc]
     def __init__(self, crops: Crops) -> None:
-        chosen = np.random.default_rng(0).choice(
-            len(crops), min(CALIBRATION_CROPS, len(crops)), replace=False
-        )
-        self._batches: Iterator[dict[str, Any]] = iter(
-            [{"crops": crops.images[i : i + 1, None]} for i in chosen]
-        )
+        number = min(CALIBRATION_CROPS, len(crops))
+        chosen = np.random.default_rng(0).choice(len(crops), number, replace=False)
+        batches = [{"crops": crops.images[i : i + 1, None]} for i in chosen]
+        self._batches: Iterator[dict[str, NDArray[np.uint8]]] = iter(batches)
 
-    def get_next(self) -> dict[str, Any] | None:
-        """One crop, or None at the end."""
+    def get_next(self) -> dict[str, NDArray[np.uint8]] | None:
+        """Return one crop, or None at the end."""
         return next(self._batches, None)
 
 
-def quantize(path: Path, target: Path, training: Crops, held: Crops) -> dict[str, float]:
-    """Write `target`, the 8-bit file of the float32 file `path`, calibrated on training crops; returns both F2 on the held-out crops.
+def quantize(path: Path, target: Path, training: Crops, held_out: Crops) -> Quantized:
+    """Write `target`, the 8-bit file of the float32 file `path`, calibrated on training crops.
 
-    Raises LearningError if it judges them worse than the float32 file by more than 0.3 % of F2; nothing is kept then.
+    Raises LearningError if it judges the held-out crops worse than the float32 file by more than 0.3 % of F2;
+    nothing is kept then.
     """
-    card = Classifier(path).card
     prepared, part = target.with_suffix(".prepared.onnx"), target.with_suffix(".part.onnx")
     try:
         quant_pre_process(str(path), str(prepared), skip_symbolic_shape=True)
-        with contextlib.redirect_stdout(io.StringIO()):  # it tells its progress
+        with contextlib.redirect_stdout(io.StringIO()):  # it prints its progress
             quantize_static(
                 str(prepared),
                 str(part),
@@ -68,16 +78,18 @@ def quantize(path: Path, target: Path, training: Crops, held: Crops) -> dict[str
         if not model.metadata_props:
             model.metadata_props.extend(onnx.load(str(path)).metadata_props)
             onnx.save(model, str(part))
-        f2 = [
-            count(rejected(class_scores(Classifier(p), held.images), card.thresholds), held.labels != OK).f2
-            for p in (path, part)
-        ]
-        if f2[1] < f2[0] - LOSS_F2:
-            raise LearningError(
-                f"{target}: F2 falls from {f2[0]:.4f} to {f2[1]:.4f} in 8 bits; nothing kept, use the float32 file"
-            )
+        found = Quantized(_f2(path, held_out), _f2(part, held_out))
+        if found.int8 < found.float32 - LOSS_F2:
+            fall = f"F2 falls from {found.float32:.4f} to {found.int8:.4f} in 8 bits"
+            raise LearningError(f"{target}: {fall}; nothing kept. Use the float32 file")
         os.replace(part, target)
     finally:
         for path_left in (prepared, part):
             path_left.unlink(missing_ok=True)
-    return {"float32": f2[0], "int8": f2[1]}
+    return found
+
+
+def _f2(path: Path, crops: Crops) -> float:
+    classifier = Classifier(path)
+    nok = rejected(class_scores(classifier, crops.images), classifier.card.thresholds)
+    return count(nok, crops.labels != OK).f2

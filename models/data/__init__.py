@@ -1,1 +1,1 @@
-"""Images to learn from and to judge: labelled crops in memory, read from lots and datasets, and varied for training."""
+"""Images to learn from and to judge: lots and datasets, read as labelled crops, and their variation."""

@@ -1,4 +1,7 @@
-"""Changes to crops that keep their labels true: another place, light, surface, lens and sensor. On whole batches, in torch."""
+"""Random changes to training crops that keep their labels true: place, light, surface, lens and sensor.
+
+They work on whole batches, in torch.
+"""
 
 import torch
 from torch import Tensor
@@ -6,7 +9,7 @@ from torch.nn import functional
 
 
 def augment(images: Tensor, maps: Tensor, rng: torch.Generator) -> tuple[Tensor, Tensor]:
-    """Changed copies of images (K, 1, 128, 128) float, 0 to 255, and of their maps (K, 2, 32, 32) float, 0 to 1."""
+    """Return changed copies of images (K, 1, 128, 128), 0..255, and of their maps (K, C, 32, 32), 0..1."""
     images, maps = _move(images, maps, rng)
     images = _light(_stain(images, rng), rng)
     return _expose(_blur(images, rng), rng), maps
@@ -16,13 +19,13 @@ def _uniform(low: float, high: float, shape: tuple[int, ...], rng: torch.Generat
     return torch.rand(shape, generator=rng) * (high - low) + low
 
 
-def _sometimes(share: float, count: int, rng: torch.Generator) -> Tensor:
-    """(K, 1, 1, 1): 1 for about `share` of the crops, else 0."""
-    return (torch.rand((count, 1, 1, 1), generator=rng) < share).float()
+def _sometimes(fraction: float, count: int, rng: torch.Generator) -> Tensor:
+    """Return 1 for about this fraction of the crops and 0 for the others, (K, 1, 1, 1)."""
+    return (torch.rand((count, 1, 1, 1), generator=rng) < fraction).float()
 
 
 def _move(images: Tensor, maps: Tensor, rng: torch.Generator) -> tuple[Tensor, Tensor]:
-    """Mirror (rows swap the partners, columns the direction), stretch, shear and shift by a few pixels."""
+    """Mirror (rows: joined parts swapped, columns: direction), stretch, shear and shift by a few pixels."""
     count = len(images)
     theta = torch.zeros(count, 2, 3)
     for axis, (stretch, shift) in enumerate(((0.15, 0.08), (0.10, 0.10))):
@@ -41,14 +44,14 @@ def _move(images: Tensor, maps: Tensor, rng: torch.Generator) -> tuple[Tensor, T
 
 
 def _smooth(points: tuple[int, int], count: int, rng: torch.Generator) -> Tensor:
-    """Smooth noise (K, 1, 128, 128) of standard deviation about 1 through a grid of random points."""
+    """Return smooth noise (K, 1, 128, 128) through a grid of random points, standard deviation about 1."""
     rough = torch.randn((count, 1, *points), generator=rng)
     medium = functional.interpolate(rough, size=(32, 32), mode="bicubic", align_corners=True)
     return functional.interpolate(medium, scale_factor=4.0, mode="bilinear")
 
 
 def _stain(images: Tensor, rng: torch.Generator) -> Tensor:
-    """Soft dark or bright patches with the texture still in them: soot, oxide, stains, which are no defects."""
+    """Add soft dark or bright patches that keep the texture, like soot, oxide and stains: not defects."""
     count = len(images)
     edge = _uniform(2, 10, (count, 1, 1, 1), rng)
     level = _uniform(0.3, 1.6, (count, 1, 1, 1), rng)
@@ -59,7 +62,7 @@ def _stain(images: Tensor, rng: torch.Generator) -> Tensor:
 
 
 def _light(images: Tensor, rng: torch.Generator) -> Tensor:
-    """Light that changes over the crop, and partners and bead that are brighter or darker against each other."""
+    """Vary the light over the crop, and the brightness of bead and joined parts against each other."""
     count = len(images)
     over = _smooth((3, 3), count, rng) * _uniform(0, 0.25, (count, 1, 1, 1), rng)
     across = _smooth((6, 2), count, rng).mean(dim=3, keepdim=True) * _uniform(0, 0.35, (count, 1, 1, 1), rng)
@@ -67,7 +70,7 @@ def _light(images: Tensor, rng: torch.Generator) -> Tensor:
 
 
 def _blur(images: Tensor, rng: torch.Generator) -> Tensor:
-    """Gaussian of 0.3 to 1.6 px on a third of the crops."""
+    """Blur a third of the crops, Gaussian of 0.3 to 1.6 px."""
     count = len(images)
     sigma = _uniform(0.3, 1.6, (count, 1), rng) * _sometimes(0.33, count, rng)[:, :, 0, 0] + 0.05
     at = torch.arange(-5, 6, dtype=torch.float32)
@@ -81,7 +84,7 @@ def _blur(images: Tensor, rng: torch.Generator) -> Tensor:
 
 
 def _expose(images: Tensor, rng: torch.Generator) -> Tensor:
-    """Gain with clipping, gamma, noise of one and of two pixels' size, whole grey levels."""
+    """Apply gain with clipping, gamma and noise one and two pixels wide; round to whole grey levels."""
     count = len(images)
     gain = torch.exp(_uniform(-0.7, 0.6, (count, 1, 1, 1), rng))
     gamma = torch.exp(_uniform(-0.4, 0.4, (count, 1, 1, 1), rng))

@@ -1,4 +1,4 @@
-"""Figures of reports through matplotlib; the models' only file that imports it."""
+"""Figures of reports, drawn with matplotlib; the only file of models that imports it."""
 
 from collections.abc import Mapping, Sequence
 from io import BytesIO
@@ -14,7 +14,7 @@ BLUE, RED, GREY = "#1f5fa8", "#b3261e", "#777777"
 
 
 def curves(nok: Array, truth: NDArray[np.bool_], escape_cost: float) -> bytes:
-    """PNG of four panels for scores of NOK (N,) and truths (N,): ROC, precision and recall, scores, calibration.
+    """Draw ROC, precision and recall, scores and calibration for scores of NOK (N,) and truths (N,), as PNG.
 
     The scores are calibrated for crops of which a NOK one counts `escape_cost` times.
     """
@@ -22,7 +22,7 @@ def curves(nok: Array, truth: NDArray[np.bool_], escape_cost: float) -> bytes:
     fpr, tpr, _ = roc_curve(truth, nok)
     axes[0].plot(fpr, tpr, color=BLUE)
     axes[0].set(
-        xlabel="false rejects, share of OK crops",
+        xlabel="false rejects, fraction of OK crops",
         ylabel="recall",
         title=f"ROC, area {auc(fpr, tpr):.4f}",
         xlim=(-0.005, 0.3),
@@ -44,12 +44,12 @@ def curves(nok: Array, truth: NDArray[np.bool_], escape_cost: float) -> bytes:
     filled = [b for b in range(10) if (at == b).any()]
     axes[3].plot([0, 1], [0, 1], color=GREY, linewidth=1)
     weights = np.where(truth, escape_cost, 1.0)
-    shares = [np.average(truth[at == b], weights=weights[at == b]) for b in filled]
+    fractions = [np.average(truth[at == b], weights=weights[at == b]) for b in filled]
     axes[3].plot(
-        [np.average(nok[at == b], weights=weights[at == b]) for b in filled], shares, "o-", color=BLUE
+        [np.average(nok[at == b], weights=weights[at == b]) for b in filled], fractions, "o-", color=BLUE
     )
     axes[3].set(
-        xlabel="score of NOK", ylabel=f"share that is NOK, each x {escape_cost:g}", title="calibration"
+        xlabel="score of NOK", ylabel=f"fraction that is NOK, each x {escape_cost:g}", title="calibration"
     )
     return _png(figure)
 
@@ -57,7 +57,7 @@ def curves(nok: Array, truth: NDArray[np.bool_], escape_cost: float) -> bytes:
 def drift_curves(
     strength: Sequence[float], named: Mapping[str, tuple[Sequence[float], Sequence[float]]]
 ) -> bytes:
-    """PNG, one panel a drift: F2 and the share of parts with the alarm against the drift's strength."""
+    """Draw F2 and the fraction of parts with the alarm over the strength of each drift, as PNG."""
     columns = min(3, len(named))
     figure, axes = _canvas(
         -(-len(named) // columns), columns, (4.2 * columns, 3.4 * -(-len(named) // columns))
@@ -73,7 +73,7 @@ def drift_curves(
 
 
 def sheet(images: Sequence[NDArray[np.uint8]], titles: Sequence[str]) -> bytes:
-    """PNG contact sheet of crops (128, 128) uint8 with a title each."""
+    """Draw a contact sheet of crops (128, 128) uint8, each with its title, as PNG."""
     columns = min(6, max(1, len(images)))
     rows = -(-len(images) // columns)
     figure, axes = _canvas(rows, columns, (2.1 * columns, 2.35 * rows))

@@ -17,7 +17,10 @@ from station.domain import SegmentScores
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 THRESHOLDS = np.arange(0.2, 0.501, 0.02)
-"""Thresholds to choose from. At 0.5 both errors cost the same; far below it a few crops would decide the choice."""
+"""Thresholds to choose from.
+
+At 0.5 both errors cost the same; far below it a few crops would decide the choice.
+"""
 
 SWEEPS = 3
 """Rounds over all kinds of defect in which their thresholds are chosen in turns."""
@@ -26,10 +29,11 @@ LINE_FRACTIONS = (1.0 - sum(kind.line_fraction for kind in KINDS), *(kind.line_f
 """Fractions of a line's segments that are OK and that show each kind of defect, in the order of `CLASSES`.
 
 Scores are given and thresholds are chosen for them. Half of the training crops are NOK, but hardly any of a
-line's: there a segment is more likely to be OK before it is seen, and there are more OK ones to reject falsely.
+line's: there a segment is more likely to be OK before it is seen, and there are more OK ones to reject
+falsely.
 """
 ESCAPE_COST = 4.0
-"""Number of false rejects that one escape weighs, as in F2 (beta squared): at a score of 0.5 both cost the same."""
+"""Number of false rejects that weigh as much as one escape, as in F2 (beta squared)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +73,7 @@ def count(nok: Flags, truth: Flags) -> Counts:
 
 
 def decided(scores: Array, thresholds: Thresholds) -> NDArray[np.int64]:
-    """Return what the station decides on crops: OK or the label of a kind of defect (N,), from scores (N, classes)."""
+    """Return what the station decides on scores (N, classes): OK or the label of a kind of defect (N,)."""
     kinds = [limit.kind for limit in thresholds.kinds]
     columns = [CLASSES.index(kind.name) for kind in kinds]
     label = dict(zip(kinds, columns, strict=True))
@@ -83,7 +87,7 @@ def decided(scores: Array, thresholds: Thresholds) -> NDArray[np.int64]:
 
 def rejected(scores: Array, thresholds: Thresholds) -> Flags:
     """Return whether the station rejects crops (N,), from scores (N, classes)."""
-    return decided(scores, thresholds) != OK
+    return np.asarray(decided(scores, thresholds) != OK, bool)
 
 
 def calibration_error(nok: Array, truth: Flags, weights: Array | None = None, bins: int = 10) -> float:
@@ -98,7 +102,7 @@ def calibration_error(nok: Array, truth: Flags, weights: Array | None = None, bi
 
 
 def prior_shift(batch_fractions: tuple[float, ...]) -> tuple[float, ...]:
-    """Return what Bayes' rule adds to the logits: from the classes' fractions in training batches to a line's.
+    """Return what Bayes' rule adds to logits that were trained with these fractions, for use on a line.
 
     A NOK segment counts `ESCAPE_COST` times. A kind of defect that was not trained keeps its logit.
     """
@@ -125,9 +129,9 @@ def line_weights(labels: NDArray[np.int64], escape_cost: float = 1.0) -> Array:
 def choose_thresholds(scores: Array, labels: NDArray[np.int64], beta: float = 2.0) -> Thresholds:
     """Return the thresholds of all kinds of defect with the best F-beta on a line.
 
-    Of those as good within 0.1 %, the middle one is taken. An escape weighs beta squared times a false reject.
-    Thresholds above 0.5 act as 0.5: a segment that is not more likely OK is rejected. With more than two kinds of
-    defect the grid is searched kind by kind, in turns.
+    Of those as good within 0.1 %, the middle one is taken. An escape weighs beta squared times a false
+    reject. Thresholds above 0.5 act as 0.5: a segment that is not more likely OK is rejected. With more than
+    two kinds of defect the grid is searched kind by kind, in turns.
     """
     value = FBeta(scores, labels, beta)
     if len(DEFECTS) <= 2:
@@ -144,7 +148,7 @@ def choose_thresholds(scores: Array, labels: NDArray[np.int64], beta: float = 2.
 
 
 class FBeta:
-    """F-beta on a line at thresholds that are given by their places in `THRESHOLDS`, one for each kind of defect."""
+    """F-beta on a line at thresholds given by their places in `THRESHOLDS`, one for each kind of defect."""
 
     def __init__(self, scores: Array, labels: NDArray[np.int64], beta: float) -> None:
         self._over = [scores[:, kind, None] >= THRESHOLDS for kind in DEFECTS]
@@ -152,11 +156,11 @@ class FBeta:
         self._truth, self._weights, self._beta2 = labels != OK, line_weights(labels), beta**2
 
     def rejected(self, places: Sequence[int]) -> Flags:
-        """Return what `rejected` returns at these thresholds, a hundred times faster: the search asks often."""
+        """Return what `measures.rejected` returns at these thresholds, but a hundred times faster."""
         nok = self._likelier_nok.copy()
         for over, place in zip(self._over, places, strict=True):
             nok |= over[:, place]
-        return nok
+        return np.asarray(nok, bool)
 
     def __call__(self, places: Sequence[int]) -> float:
         """Return F-beta at these thresholds."""

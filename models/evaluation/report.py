@@ -19,27 +19,28 @@ from station.classify.onnx import CLASSES
 from station.files.durable import write_whole
 
 SIZES_MM = (0.0, 0.15, 0.3, 0.6, 1.2, 1e9)
+"""Bounds of the lengths by which found defects are counted."""
 TEMPLATE = Path(__file__).with_name("report.html.j2")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationPage:
-    """What report.html.j2 lays out; images are PNG."""
+    """Contents of report.html.j2; images are PNG."""
 
     title: str
     facts: tuple[tuple[str, str], ...]
     lines: tuple[str, ...]
     curves_base64: str | None
-    """None: the truths are all alike."""
+    """None if all truths are the same."""
     confusion_head: tuple[str, ...]
     confusion: tuple[tuple[str, ...], ...]
     defects: tuple[tuple[str, str, str], ...]
-    """Kind, length, how many were found."""
+    """Kind, length and how many were found."""
     worst_base64: str | None
 
 
 def summary(found: Evaluation) -> dict[str, Any]:
-    """All figures, JSON-ready."""
+    """Return all figures, ready for JSON."""
     truth = found.labels != OK
     counts = count(found.nok, truth)
     answer: dict[str, Any] = {
@@ -61,7 +62,7 @@ def summary(found: Evaluation) -> dict[str, Any]:
 
 
 def _confusion(found: Evaluation) -> dict[str, dict[str, int]]:
-    """Count the crops by what they show and what was decided."""
+    """Count the crops by what they show (outer) and what was decided (inner)."""
     return {
         name: {
             other: int(((found.labels == i) & (found.decided == j)).sum()) for j, other in enumerate(CLASSES)
@@ -102,7 +103,7 @@ def _parts(found: Evaluation) -> dict[str, Any]:
 
 
 def _by_size(found: Evaluation) -> list[dict[str, Any]]:
-    """Defects found, by kind and length."""
+    """Count the defects found, by kind and length."""
     rows = []
     for kind in CLASSES[1:]:
         for low, high in pairwise(SIZES_MM):
@@ -126,37 +127,41 @@ def _by_size(found: Evaluation) -> list[dict[str, Any]]:
 
 
 def lines(found: Evaluation) -> list[str]:
-    """For people."""
+    """Return the figures as text."""
     figures = summary(found)
+    segments, parts = figures["segments"], figures.get("parts")
+    precision, recall, f2 = (f"{segments[name]:.3f}" for name in ("precision", "recall", "f2"))
+    wrong = f"{segments['fn']} missed, {segments['fp']} false"
+    on_segments = [
+        f"segments: precision {precision}, recall {recall}, F2 {f2} ({wrong})",
+        f"calibration error {segments['calibration_error']:.3f}",
+    ]
+    if parts is None:
+        return on_segments
+    return [*_verdicts(parts), *on_segments, *_named(parts)]
+
+
+def _verdicts(parts: dict[str, Any]) -> list[str]:
+    escapes, rejects = len(parts["escapes"]), len(parts["false_rejects"])
+    wrong = f"{escapes} escapes, {rejects} false rejects, {len(parts['not_judged'])} not judged"
+    of_escapes, of_rejects = _percent(parts["escape_rate_95"]), _percent(parts["false_reject_rate_95"])
+    answer = [
+        f"{parts['count']} parts: {parts['right']} right, {wrong}",
+        f"95 % intervals: escapes {of_escapes}, false rejects {of_rejects}",
+    ]
+    if "center_error_px" in parts:
+        (center, radius) = parts["center_error_px"], parts["radius_error_px"]
+        errors = f"centre {center[0]:.2f}, {center[1]:.2f} px; radius {radius[0]:.2f}, {radius[1]:.2f} px"
+        answer.append(f"ring, median and maximum error: {errors}")
+    return answer
+
+
+def _named(parts: dict[str, Any]) -> list[str]:
     answer = []
-    if found.parts:
-        p = figures["parts"]
-        wrong = f"{len(p['escapes'])} escapes, {len(p['false_rejects'])} false rejects, {len(p['not_judged'])} not judged"
-        answer.append(f"{p['count']} parts: {p['right']} right, {wrong}")
-        answer.append(
-            f"95 % intervals: escapes {_percent(p['escape_rate_95'])}, false rejects {_percent(p['false_reject_rate_95'])}"
-        )
-        if "center_error_px" in p:
-            (a, b), (c, d) = p["center_error_px"], p["radius_error_px"]
-            answer.append(
-                f"ring, median and worst error: centre {a:.2f}, {b:.2f} px; radius {c:.2f}, {d:.2f} px"
-            )
-    s = figures["segments"]
-    answer.append(
-        f"segments: precision {s['precision']:.3f}, recall {s['recall']:.3f}, F2 {s['f2']:.3f} ({s['fn']} missed, {s['fp']} false)"
-    )
-    answer.append(f"calibration error {s['calibration_error']:.3f}")
-    if found.parts:
-        p = figures["parts"]
-        if p["reported_as_novel"]:
-            answer.append(f"{p['reported_as_novel']} parts look unlike the training images")
-        for title, key in (
-            ("escaped", "escapes"),
-            ("falsely refused", "false_rejects"),
-            ("not judged", "not_judged"),
-        ):
-            if p[key]:
-                answer.append(f"{title}: {', '.join(p[key])}")
+    if parts["reported_as_novel"]:
+        answer.append(f"{parts['reported_as_novel']} parts are unlike the training images")
+    titles = (("escaped", "escapes"), ("falsely rejected", "false_rejects"), ("not judged", "not_judged"))
+    answer += [f"{title}: {', '.join(parts[key])}" for title, key in titles if parts[key]]
     return answer
 
 
@@ -165,7 +170,7 @@ def _percent(bounds: tuple[float, float]) -> str:
 
 
 def write_report(found: Evaluation, folder: Path, title: str, facts: dict[str, str]) -> None:
-    """Write `report.html` and `evaluation.json` to `folder`; `facts` say which files were judged by what."""
+    """Write report.html and evaluation.json into `folder`; `facts` name the data and the network."""
     folder.mkdir(parents=True, exist_ok=True)
     figures = summary(found)
     write_whole(folder / "evaluation.json", (json.dumps({**facts, **figures}, indent=1) + "\n").encode())
@@ -177,7 +182,7 @@ def _page(found: Evaluation, figures: dict[str, Any], title: str, facts: dict[st
 
     nok, truth = 1 - found.scores[:, OK], found.labels != OK
     confusion, defects = figures["segments"]["confusion"], figures.get("defects", ())
-    titles = [f"{w.name}\n{CLASSES[w.label]}: score of NOK {w.nok:.2f}" for w in found.worst]
+    titles = [f"{w.name}\n{CLASSES[w.label]}: probability of NOK {w.nok:.2f}" for w in found.worst]
     return EvaluationPage(
         title=title,
         facts=tuple(facts.items()),

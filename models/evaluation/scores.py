@@ -11,7 +11,10 @@ BATCH = 256
 
 
 def class_scores(classifier: Classifier, images: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """Return probabilities (N, classes) of crops (N, 128, 128) uint8, columns as in `CLASSES`. Raises ModelError."""
+    """Return probabilities (N, classes) of crops (N, 128, 128) uint8, columns as in `CLASSES`.
+
+    Raises ModelError.
+    """
     batches = (classifier(images[i : i + BATCH]).scores for i in range(0, len(images), BATCH))
     return np.array([row_of(scores) for batch in batches for scores in batch])
 

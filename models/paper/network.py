@@ -1,6 +1,7 @@
-"""The paper's classifier (section 5: YOLOv11n-cls) by its plan: 1.5 million weights, three channels, cross-stage blocks, one attention.
+"""The paper's classifier (section 5: YOLOv11n-cls), written after the published architecture.
 
-Own code after the published architecture; it is the yardstick for time and accuracy. It has no defect map.
+1.5 million weights, three channels, cross-stage blocks, one attention block. It is the yardstick for time and
+accuracy and has no defect map.
 """
 
 import torch
@@ -9,7 +10,14 @@ from torch import Tensor, nn
 
 class _Conv(nn.Sequential):
     def __init__(
-        self, inputs: int, outputs: int, size: int = 1, stride: int = 1, groups: int = 1, active: bool = True
+        self,
+        inputs: int,
+        outputs: int,
+        size: int = 1,
+        stride: int = 1,
+        *,
+        groups: int = 1,
+        active: bool = True,
     ) -> None:
         super().__init__(
             nn.Conv2d(inputs, outputs, size, stride, size // 2, groups=groups, bias=False),
@@ -24,13 +32,13 @@ class _Bottleneck(nn.Module):
         self.branch = nn.Sequential(_Conv(channels, inner, 3), _Conv(inner, channels, 3))
 
     def forward(self, x: Tensor) -> Tensor:
-        """Same shape out."""
+        """Return a tensor of the same shape."""
         answer: Tensor = x + self.branch(x)
         return answer
 
 
 class _Stage(nn.Module):
-    """Half of the channels pass by, half go through `body`; all are mixed at the end."""
+    """Passes half of the channels through `body`, half around it, and mixes all of them at the end."""
 
     def __init__(self, inputs: int, outputs: int, hidden: int, body: nn.Module) -> None:
         super().__init__()
@@ -39,14 +47,14 @@ class _Stage(nn.Module):
         self.last = _Conv(3 * hidden, outputs)
 
     def forward(self, x: Tensor) -> Tensor:
-        """(K, inputs, H, W) to (K, outputs, H, W)."""
+        """Take (K, inputs, H, W) to (K, outputs, H, W)."""
         a, b = self.first(x).chunk(2, dim=1)
         answer: Tensor = self.last(torch.cat([a, b, self.body(b)], dim=1))
         return answer
 
 
 class _Deep(nn.Module):
-    """Two bottlenecks with a bypass."""
+    """Two bottlenecks with a bypass around both."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()
@@ -56,13 +64,13 @@ class _Deep(nn.Module):
         self.last = _Conv(channels, channels)
 
     def forward(self, x: Tensor) -> Tensor:
-        """Same shape out."""
+        """Return a tensor of the same shape."""
         answer: Tensor = self.last(torch.cat([self.body(self.through(x)), self.beside(x)], dim=1))
         return answer
 
 
 class _Attention(nn.Module):
-    """Each place looks at all others; then a feed-forward."""
+    """Attention of each place to all others, then a feed-forward block."""
 
     def __init__(self, channels: int, heads: int) -> None:
         super().__init__()
@@ -74,19 +82,22 @@ class _Attention(nn.Module):
         self.feed = nn.Sequential(_Conv(channels, 2 * channels), _Conv(2 * channels, channels, active=False))
 
     def forward(self, x: Tensor) -> Tensor:
-        """Same shape out."""
+        """Return a tensor of the same shape."""
         count, channels, height, width = x.shape
         parts = self.project(x).view(count, self.heads, 2 * self.key + self.value, height * width)
         query, key, value = parts.split([self.key, self.key, self.value], dim=2)
-        share = torch.softmax(query.transpose(2, 3) @ key * self.key**-0.5, dim=3)
-        seen = (value @ share.transpose(2, 3)).reshape(count, channels, height, width)
+        weight = torch.softmax(query.transpose(2, 3) @ key * self.key**-0.5, dim=3)
+        seen = (value @ weight.transpose(2, 3)).reshape(count, channels, height, width)
         x = x + self.mix(seen + self.place(value.reshape(count, channels, height, width)))
         answer: Tensor = x + self.feed(x)
         return answer
 
 
 class PaperNet(nn.Module):
-    """Crops (K, 1, 128, 128) uint8 to logits (K, `classes`); the channel is repeated three times as the published network takes it."""
+    """The network: crops (K, 1, 128, 128) uint8 to logits (K, `classes`).
+
+    The channel is repeated three times, as the published network takes it.
+    """
 
     def __init__(self, classes: int = 2) -> None:
         super().__init__()
@@ -106,6 +117,6 @@ class PaperNet(nn.Module):
         self.classes = nn.Linear(1280, classes)
 
     def forward(self, crops: Tensor) -> tuple[Tensor, None, None]:
-        """Class logits; neither map nor features."""
+        """Return class logits; neither map nor features."""
         x = (crops.to(torch.float32) / 255).expand(-1, 3, -1, -1)
         return self.classes(self.features(x).mean(dim=(2, 3))), None, None

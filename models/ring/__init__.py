@@ -1,1 +1,1 @@
-"""The ring network, which finds the weld's centre line: how it is trained, written and combined with a second one."""
+"""The ring network, which finds the weld's centre line: its training, its file and pairs of two."""

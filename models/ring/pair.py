@@ -1,6 +1,7 @@
-"""Two ring networks as one file: the offsets by presence, the first counting three times; the presences as they are.
+"""Two ring networks combined in one file.
 
-One network may be exact and blind to some surfaces, another see more and less exactly.
+One may be precise but blind to some surfaces, the other see more of them, less precisely. Their offsets are
+weighted by presence, the first network's three times; the presences are averaged.
 """
 
 import json
@@ -18,44 +19,57 @@ FIRST_WEIGHT = 3.0
 
 
 def pair_rings(first: Path, second: Path, out: Path, version: str) -> None:
-    """Write `out`/ring.onnx and `out`/RING.md. Raises ModelError, LearningError if the file does not answer as the two together."""
+    """Write ring.onnx and RING.md into `out`.
+
+    Raises ModelError, or LearningError if the file does not answer as the two networks together.
+    """
     networks = [RingNetwork(path) for path in (first, second)]
     loaded = [onnx.load(str(path)) for path in (first, second)]
     parents = [{m.key: m.value for m in model.metadata_props} for model in loaded]
+    hashes = [parent.get("weldgate.data_hash", "unknown") for parent in parents]
+    out.mkdir(parents=True, exist_ok=True)
+    part = out / "ring.part.onnx"
+    metadata = {"weldgate.version": version, "weldgate.data_hash": "+".join(hashes)}
+    save(_paired(*loaded), part, metadata)
+    band = np.random.default_rng(0).integers(0, 256, (ROWS, COLUMNS), dtype=np.uint8)[None]
+    (o1, p1), (o2, p2) = (network.sectors(band)[0] for network in networks)
+    weight = FIRST_WEIGHT * p1
+    expected = np.stack([(weight * o1 + p2 * o2) / (weight + p2 + 1e-6), (p1 + p2) / 2])
+    keep(part, out / "ring.onnx", largest_gap(expected, RingNetwork(part).sectors(band)[0]))
+    facts = [
+        {"version": parent.get("weldgate.version"), "data_hash": data_hash, "sha256": network.file_hash}
+        for parent, data_hash, network in zip(parents, hashes, networks, strict=True)
+    ]
+    card = {"version": version, "first_weight": FIRST_WEIGHT, "networks": facts}
+    (out / "RING.md").write_text(
+        "# Ring network\n\n"
+        "Two networks trained on rendered images only, joined by `weldgate-models pair-rings`.\n\n"
+        f"```json\n{json.dumps(card, indent=2)}\n```\n"
+    )
+
+
+def _paired(first: onnx.ModelProto, second: onnx.ModelProto) -> onnx.ModelProto:
     a, b = (
         compose.add_prefix(model, f"{name}/", rename_inputs=False)
-        for name, model in zip("ab", loaded, strict=True)
+        for name, model in (("a", first), ("b", second))
     )
-    nodes = [*a.graph.node, *b.graph.node, *_mean()]
     values = [
         helper.make_tensor(name, TensorProto.FLOAT, [1], [value])
         for name, value in (("w", FIRST_WEIGHT), ("half", 0.5), ("e", 1e-6))
     ]
     target = helper.make_tensor_value_info("sectors", TensorProto.FLOAT, ["count", 2, SECTORS])
     graph = helper.make_graph(
-        nodes, "rings", list(a.graph.input), [target], [*a.graph.initializer, *b.graph.initializer, *values]
+        [*a.graph.node, *b.graph.node, *_mean()],
+        "rings",
+        list(a.graph.input),
+        [target],
+        [*a.graph.initializer, *b.graph.initializer, *values],
     )
-    model = helper.make_model(graph, opset_imports=list(a.opset_import), ir_version=a.ir_version)
-    hashes = [parent.get("weldgate.data_hash", "unknown") for parent in parents]
-    out.mkdir(parents=True, exist_ok=True)
-    part = out / "ring.part.onnx"
-    save(model, part, {"weldgate.version": version, "weldgate.data_hash": "+".join(hashes)})
-    band = np.random.default_rng(0).integers(0, 256, (ROWS, COLUMNS), dtype=np.uint8)[None]
-    (o1, p1), (o2, p2) = (network.sectors(band)[0] for network in networks)
-    weight = FIRST_WEIGHT * p1
-    wanted = np.stack([(weight * o1 + p2 * o2) / (weight + p2 + 1e-6), (p1 + p2) / 2])
-    keep(part, out / "ring.onnx", largest_gap(wanted, RingNetwork(part).sectors(band)[0]))
-    facts = [
-        {"version": p.get("weldgate.version"), "data_hash": h, "sha256": n.file_hash}
-        for p, h, n in zip(parents, hashes, networks, strict=True)
-    ]
-    card = {"version": version, "first_weight": FIRST_WEIGHT, "networks": facts}
-    text = "Two networks trained on rendered images only, joined by `weldgate-models pair-rings`."
-    (out / "RING.md").write_text(f"# Ring network\n\n{text}\n\n```json\n{json.dumps(card, indent=2)}\n```\n")
+    return helper.make_model(graph, opset_imports=list(a.opset_import), ir_version=a.ir_version)
 
 
 def _mean() -> list[onnx.NodeProto]:
-    """Sectors of `a` and `b`, each (K, 2, 84) of offset and presence, to their mean."""
+    """Return the nodes that average the sectors of `a` and `b`, each (K, 2, 84) of offset and presence."""
     return [
         helper.make_node("Split", ["a/sectors"], ["o1", "p1"], axis=1),
         helper.make_node("Split", ["b/sectors"], ["o2", "p2"], axis=1),

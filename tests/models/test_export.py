@@ -9,16 +9,23 @@ from models.classifier import export as export_file
 from models.classifier.export import Contract, export, read_network
 from models.classifier.network import STATISTICS, WeldNet
 from models.errors import LearningError
+from models.ring.network import RingNet
 from models.ring.pair import pair_rings
-from models.ring.train import RingNet
-from station.classify.onnx import Classifier, RingNetwork
+from station.classify.onnx import CLASSES, Classifier, RingNetwork
 from tests.conftest import RING_MODEL
-from tests.parts import thresholds
+from tests.models.made import limits
 
 
 def contract() -> Contract:
-    rng = np.random.default_rng(1)
-    return Contract("1.2", "d" * 64, thresholds(0.3, 0.2), rng.normal(size=STATISTICS), np.eye(STATISTICS) * 0.5, 2.5, (0.5, -1.0, -0.5))
+    return Contract(
+        version="1.2",
+        data_hash="d" * 64,
+        thresholds=limits(hole=0.3, missing_weld=0.2),
+        mean=np.random.default_rng(1).normal(size=STATISTICS),
+        whitening=np.eye(STATISTICS) * 0.5,
+        novelty_limit=2.5,
+        prior_shift=(0.5, *np.linspace(-1.0, -0.5, len(CLASSES) - 1).tolist()),
+    )
 
 
 def trained() -> WeldNet:
@@ -35,13 +42,17 @@ def test_the_file_answers_like_the_network(tmp_path: Path) -> None:
     export(network, tmp_path / "a.onnx", says)
     classifier = Classifier(tmp_path / "a.onnx")
     card = classifier.card
-    assert (card.version, card.thresholds, card.novelty_limit) == ("1.2", thresholds(0.3, 0.2), 2.5)
+    assert (card.version, card.thresholds, card.novelty_limit) == (
+        "1.2",
+        limits(hole=0.3, missing_weld=0.2),
+        2.5,
+    )
     crops = np.random.default_rng(5).integers(0, 256, (3, 128, 128), dtype=np.uint8)
     with torch.no_grad():
         logits, where, features = network(torch.from_numpy(crops[:, None]))
     judged = classifier(crops)
-    wanted = torch.softmax(logits + torch.tensor(says.prior_shift), 1).numpy()
-    assert np.array([(s.ok, *s.defects.values()) for s in judged.scores]) == pytest.approx(wanted, abs=1e-4)
+    expected = torch.softmax(logits + torch.tensor(says.prior_shift), 1).numpy()
+    assert np.array([(s.ok, *s.defects.values()) for s in judged.scores]) == pytest.approx(expected, abs=1e-4)
     assert judged.maps == pytest.approx(torch.sigmoid(where).numpy(), abs=1e-4)
     away = (features.numpy() - says.mean) @ says.whitening
     assert judged.looks == pytest.approx(away, rel=1e-3, abs=1e-3)
@@ -86,7 +97,9 @@ def test_a_pair_of_ring_networks_answers_as_their_mean(tmp_path: Path) -> None:
     export_ring(RingNet(), tmp_path / "other.onnx", "7", "e" * 64)
     pair_rings(RING_MODEL, tmp_path / "other.onnx", tmp_path / "pair", "8")
     band = np.random.default_rng(4).integers(0, 256, (1, 192, 672), dtype=np.uint8)
-    (o1, p1), (o2, p2) = (RingNetwork(path).sectors(band)[0] for path in (RING_MODEL, tmp_path / "other.onnx"))
+    (o1, p1), (o2, p2) = (
+        RingNetwork(path).sectors(band)[0] for path in (RING_MODEL, tmp_path / "other.onnx")
+    )
     offset, presence = RingNetwork(tmp_path / "pair" / "ring.onnx").sectors(band)[0]
     assert presence == pytest.approx((p1 + p2) / 2, abs=1e-4)
     assert offset == pytest.approx((3 * p1 * o1 + p2 * o2) / (3 * p1 + p2), abs=1e-3)

@@ -4,16 +4,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models.data.crops import IGNORED, OK
-from models.data.labelled import Defect, LabelledStrip, label_of_arc, read_labels, read_lot, split_by_part, station_crops, window_crops
+from models.data.crops import DEFECTS, IGNORED, OK
+from models.data.labelled import (
+    LabelledStrip,
+    label_of_arc,
+    read_lot,
+    split_by_part,
+    station_crops,
+    window_crops,
+)
+from models.data.lot import Defect, read_labels
 from models.errors import LearningError
+from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_DEG, STRIP_COLUMNS
 from tests.models.made import HOLE, MISSING
 from tests.parts import FRAMES
 
 
 @pytest.mark.parametrize(
-    ("defects", "wanted"),
+    ("defects", "label"),
     [
         ((), OK),
         ((Defect(HOLE, 2, 3),), HOLE),
@@ -26,40 +35,46 @@ from tests.parts import FRAMES
         ((Defect(HOLE, 40, 41),), OK),
     ],
 )
-def test_labels_of_the_first_crop(defects: tuple[Defect, ...], wanted: int) -> None:
-    assert label_of_arc(defects, 0.0, SEGMENT_DEG) == wanted
+def test_labels_of_the_first_crop(defects: tuple[Defect, ...], label: int) -> None:
+    assert label_of_arc(defects, 0.0, SEGMENT_DEG) == label
 
 
 def strips(count: int) -> list[LabelledStrip]:
-    """Strips with a hole, a missing weld or nothing, in turn."""
+    """Strips with nothing, a hole, a missing weld or another kind of defect, in turn."""
     rng = np.random.default_rng(0)
-    kinds = ((), (Defect(HOLE, 40, 44),), (Defect(MISSING, 350, 380),))
-    return [LabelledStrip(f"p{i}", rng.integers(0, 256, (128, STRIP_COLUMNS), dtype=np.uint8), kinds[i % 3]) for i in range(count)]
+    arcs = dict.fromkeys(DEFECTS, (100.0, 110.0)) | {HOLE: (40.0, 44.0), MISSING: (350.0, 380.0)}
+    kinds = ((), *((Defect(label, *arc),) for label, arc in arcs.items()))
+    images = [rng.integers(0, 256, (128, STRIP_COLUMNS), dtype=np.uint8) for _ in range(count)]
+    return [LabelledStrip(f"p{i}", image, kinds[i % len(kinds)]) for i, image in enumerate(images)]
+
+
+ALL = 1 + len(DEFECTS)
+"""Number of strips that show each kind once, or nothing."""
 
 
 def test_the_window_slides_by_ten_pixels_and_round_the_seam() -> None:
-    found = window_crops(strips(3), 10, None)
-    assert len(found) > 3 * 260 - 60
+    found = window_crops(strips(ALL), 10, None)
+    assert len(found) > ALL * 260 - 60
     holes = found.pick(found.labels == HOLE)
-    assert set(holes.parts) == {"p1"}
+    assert set(holes.parts) == {f"p{HOLE}"}
     assert 10 <= len(holes) <= 17  # 128 px of crop and a hole of 30 px, at least a fifth of it inside
     assert not found.mapped.any()
 
 
 def test_balancing_repeats_the_rarer_defect_and_cuts_the_good_ones() -> None:
-    found = window_crops(strips(3), 10, np.random.default_rng(1))
-    counts = [found.count(k) for k in (OK, HOLE, MISSING)]
-    assert counts[HOLE] == counts[MISSING] == counts[OK] // 2
+    found = window_crops(strips(ALL), 10, np.random.default_rng(1))
+    of_defects = {found.count(label) for label in DEFECTS}
+    assert of_defects == {found.count(OK) // len(DEFECTS)}
 
 
 def test_kinds_that_are_lacking_are_named() -> None:
-    with pytest.raises(LearningError, match="show no missing_weld"):
-        window_crops(strips(2), 10, np.random.default_rng(1))
+    with pytest.raises(LearningError, match=f"show no .*{CLASSES[DEFECTS[-1]]}"):
+        window_crops(strips(ALL - 1), 10, np.random.default_rng(1))
 
 
 def test_the_stations_crops_leave_open_ones_out() -> None:
-    found = station_crops(strips(3))
-    assert len(found) <= 63
+    found = station_crops(strips(ALL))
+    assert len(found) <= 21 * ALL
     assert found.count(HOLE) == 1
     assert found.count(MISSING) >= 2
 
@@ -102,7 +117,7 @@ def test_a_lot_is_cut_at_its_labelled_rings(tmp_path: Path) -> None:
         ({"frame": "bad.png"}, "not a readable image"),
         ({"radius": -1}, "centre and radius"),
         ({"center": [5.0, 5.0]}, "not wholly in view"),
-        ({"verdict": "NOK", "defects": [{"kind": "crack", "angle_deg": [1, 2]}]}, "unknown kind crack"),
+        ({"verdict": "NOK", "defects": [{"kind": "dent", "angle_deg": [1, 2]}]}, "unknown kind dent"),
         ({"verdict": "NOK", "defects": [{"kind": "hole", "angle_deg": [9, 2]}]}, "angle_deg"),
         ({"verdict": "NOK", "defects": []}, "does not fit 0 defects"),
         ({"defects": None}, "lacks or garbles"),

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models.classifier.novelty import describe, distances, limit, part_distances
@@ -41,6 +41,7 @@ VALUE = st.sampled_from([0.0, 0.2, 0.3, 0.5, 0.9]) | st.floats(0, 1)
 SCORES = st.lists(st.lists(VALUE, min_size=len(CLASSES), max_size=len(CLASSES)), min_size=1, max_size=20)
 
 
+@settings(deadline=None)  # a loaded machine takes its time
 @given(SCORES, st.lists(VALUE, min_size=len(KINDS), max_size=len(KINDS)))
 def test_the_decision_is_the_stations(rows: list[list[float]], values: list[float]) -> None:
     limits = Thresholds(tuple(Limit(kind, value) for kind, value in zip(KINDS, values, strict=True)))
@@ -60,6 +61,7 @@ def test_a_file_that_knows_fewer_kinds_decides_among_those() -> None:
     assert decided(scores, limits).tolist() == [OK, len(KINDS), len(KINDS)]
 
 
+@settings(deadline=None)  # a loaded machine takes its time
 @given(SCORES, st.lists(st.integers(0, THRESHOLDS.size - 1), min_size=len(KINDS), max_size=len(KINDS)))
 def test_the_search_for_thresholds_rejects_as_the_station(rows: list[list[float]], places: list[int]) -> None:
     scores = np.array(rows)

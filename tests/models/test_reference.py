@@ -16,7 +16,7 @@ def looks(parts: int, seed: int) -> np.ndarray:  # type: ignore[type-arg]
 
 
 @pytest.mark.parametrize("parts", [MIN_PARTS, 40, 150])
-def test_the_limit_holds_for_further_good_parts_and_tells_a_shift_of_one_spread(parts: int) -> None:
+def test_the_limit_holds_for_further_good_parts_and_reports_a_shift_of_one_spread(parts: int) -> None:
     alarms = 0
     for seed in range(10):
         reference = make_reference(looks(parts, seed), "abc")
@@ -30,5 +30,5 @@ def test_the_limit_holds_for_further_good_parts_and_tells_a_shift_of_one_spread(
 def test_too_few_parts_and_one_part_copied_are_refused() -> None:
     with pytest.raises(LearningError, match="19 good parts were judged; a reference needs at least 20"):
         make_reference(looks(19, 0), "abc")
-    with pytest.raises(LearningError, match="pictures of all parts are the same"):
+    with pytest.raises(LearningError, match="images of all parts are the same"):
         make_reference(np.repeat(looks(1, 0), 30, axis=0), "abc")

@@ -5,9 +5,10 @@ import cv2
 import numpy as np
 import pytest
 
-from models.data.crops import OK
+from models.data.crops import CHANNELS, DEFECTS, OK
 from models.data.rendered import read_rendered
 from models.errors import LearningError
+from station.classify.onnx import CLASSES
 from tests.models.made import HOLE, MISSING, dataset
 
 
@@ -19,14 +20,15 @@ def folder(tmp_path: Path) -> Path:
 def test_a_dataset_is_read_whole_and_its_maps_lie_on_the_defects(folder: Path) -> None:
     training, held, digest = read_rendered([folder])
     assert (len(training), len(held)) == (24, 12)
-    assert [training.count(k) for k in (OK, HOLE, MISSING)] == [8, 8, 8]
+    assert [training.count(label) for label in (OK, *DEFECTS)] == [24 // len(CLASSES)] * len(CLASSES)
     assert len(digest) == 64
     for image, label, maps in zip(training.images, training.labels, training.maps, strict=True):
         assert bool(maps.any()) == (label != OK)
         if label != OK:
-            covered = np.kron(maps[label - 1], np.ones((4, 4))) == 255
+            channel = CHANNELS.index(CLASSES[label])
+            covered = np.kron(maps[channel], np.ones((4, 4))) == 255
             assert image[covered].mean() < 30
-            assert not maps[2 - label].any()
+            assert not np.delete(maps, channel, axis=0).any()
 
 
 def test_two_datasets_are_one(folder: Path, tmp_path: Path) -> None:
@@ -97,4 +99,34 @@ def test_a_dataset_without_one_kind_is_refused(tmp_path: Path) -> None:
         manifest["images"].remove(entry)
     (folder / "manifest.json").write_text(json.dumps(manifest))
     with pytest.raises(LearningError, match="images/val shows no missing_weld"):
+        read_rendered([folder])
+
+
+def test_a_kind_that_is_not_asked_for_may_be_absent(tmp_path: Path) -> None:
+    folder = dataset(tmp_path / "data", kinds=("ok", "hole"))
+    assert read_rendered([folder], [HOLE])[0].count(HOLE) == 12
+    assert read_rendered([folder], ())[1].count(MISSING) == 0
+    with pytest.raises(LearningError, match=r"images/train shows no missing_weld\. Render more crops"):
+        read_rendered([folder], [HOLE, MISSING])
+    with pytest.raises(LearningError, match=r"images/train shows no defect\. "):
+        read_rendered([dataset(tmp_path / "good", kinds=("ok",))], ())
+
+
+def _outlines(folder: Path, kind: str, outlines: object) -> None:
+    manifest = json.loads((folder / "manifest.json").read_text())
+    for entry in manifest["images"]:
+        if entry["kind"] == kind:
+            entry["defects"] = outlines
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+
+
+def test_a_kind_that_is_never_outlined_is_refused(folder: Path) -> None:
+    _outlines(folder, "hole", [])
+    with pytest.raises(LearningError, match=r"images/train outlines none of its \d+ crops of hole"):
+        read_rendered([folder])
+
+
+def test_an_outline_of_an_unknown_kind_is_refused(folder: Path) -> None:
+    _outlines(folder, "hole", [{"kind": "dent", "polygon_px": [[1, 1, 9, 1, 9, 9]]}])
+    with pytest.raises(LearningError, match="outline of unknown kind dent"):
         read_rendered([folder])

@@ -92,7 +92,17 @@ def evaluation(tmp_path_factory: pytest.TempPathFactory) -> Evaluation:
         RingNetwork(RING_MODEL), Classifier(MODEL), WeldSettings(), QualitySettings(), ModelSettings()
     )
     found = evaluate_lot(lot, inspector)
-    error = PartResult(HOSTILE, "NOK", "ERROR", HOSTILE, None, None, None, False, ())
+    error = PartResult(
+        name=HOSTILE,
+        truth="NOK",
+        verdict="ERROR",
+        reason=HOSTILE,
+        center_error_px=None,
+        radius_error_px=None,
+        novelty=None,
+        novel=False,
+        defects=(),
+    )
     return replace(found, parts=(*found.parts, error))
 
 
