@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -199,7 +200,8 @@ def _dataset(arguments: argparse.Namespace) -> None:
     pool = cluster(arguments.scheduler) if arguments.scheduler else workers(arguments.workers)
     with pool as executor, _progress() as progress:
         task = progress.add_task("rendering", total=arguments.count)
-        write_dataset(arguments.out, order, model, executor, lambda images: progress.advance(task, images))
+        advance = partial(progress.advance, task)
+        write_dataset(arguments.out, order, model, executor=executor, done=advance)
     print(f"{arguments.count} crops in {arguments.out}")
 
 

@@ -57,21 +57,20 @@ def run(rounds: int) -> None:
     plain(shards[0].parts[0], model, optics)
     seconds: dict[str, list[float]] = {"plain script": [], "generator, flat": [], "generator, arcs": []}
     with workers(2) as pool, tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
-        warm = [
-            Order(seed=1, count=48, recipe=PAPER, switches=ALL, is_straight=True),
-            Order(seed=1, count=42, recipe=WIDE, switches=ALL),
-        ]
-        for order in warm:
-            write_dataset(Path(folder) / f"warm{order.is_straight}", order, model, pool, lambda n: None)
+        make = partial(write_dataset, model=model, executor=pool, done=lambda n: None)
+        kinds = {"generator, flat": (PAPER, True), "generator, arcs": (WIDE, False)}
+        for name, (recipe, is_straight) in kinds.items():
+            make(
+                Path(folder) / name,
+                Order(seed=1, count=48, recipe=recipe, switches=ALL, is_straight=is_straight),
+            )
         for i in range(rounds):
             seconds["plain script"].append(
                 _timed(lambda: [plain(p, model, optics) for p in shards[0].parts]) / 12
             )
-            for name, recipe, flat in (("generator, flat", PAPER, True), ("generator, arcs", WIDE, False)):
-                order = Order(seed=9 + i, count=240, recipe=recipe, switches=ALL, is_straight=flat)
-                out = Path(folder) / f"{flat}{i}"
-                write = partial(write_dataset, out, order, model, pool, lambda _: None)
-                seconds[name].append(_timed(write) / 240)
+            for name, (recipe, is_straight) in kinds.items():
+                order = Order(seed=9 + i, count=240, recipe=recipe, switches=ALL, is_straight=is_straight)
+                seconds[name].append(_timed(partial(make, Path(folder) / f"{name} {i}", order)) / 240)
     table = Table("", "crops per s, median", "ms a crop", "5000 crops, min", "times the plain script")
     base = float(np.median(seconds["plain script"]))
     for name, values in seconds.items():

@@ -84,16 +84,16 @@ def _shade(
             hit.bsdf(),
             hit,
             valid,
-            positions,
-            strength,
-            sigma,
-            base,
-            shift,
-            offset + sample,
-            side * side,
-            emitters,
-            lambertian,
             rng,
+            positions=positions,
+            strength=strength,
+            sigma=sigma,
+            lambertian=lambertian,
+            base=base,
+            shift=shift,
+            first=offset + sample,
+            stride=side * side,
+            emitters=emitters,
         )
         to = dr.gather(mi.Point3f, positions, base + chosen) + shift
         lit = valid & (light > 0) & ~world.ray_test(hit.spawn_ray_to(to), valid & (light > 0))
@@ -107,9 +107,9 @@ def _shade(
 
 @dr.syntax
 def _gather_light(  # type: ignore[no-untyped-def]
-    bsdf, hit, valid, positions, strength, sigma, base, shift, first, stride, emitters, lambertian, rng
+    bsdf, hit, valid, rng, *, positions, strength, sigma, lambertian, base, shift, first, stride, emitters
 ):
-    """Sum BSDF times irradiance over every `stride`-th emitter, and draw one in proportion to its share."""
+    """Sum BSDF times irradiance over every `stride`-th emitter, and draw one in proportion to its part."""
     total = mi.Float(0.0)
     chosen = mi.UInt32(0)
     k = mi.UInt32(first % stride)

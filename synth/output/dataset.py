@@ -49,7 +49,7 @@ class Order:
 
 
 def write_dataset(
-    out: Path, order: Order, model: WeldModel, executor: Executor | None, done: Callable[[int], None]
+    out: Path, order: Order, model: WeldModel, *, executor: Executor | None, done: Callable[[int], None]
 ) -> None:
     """Make a dataset, or what is missing of it. `done` is called with the number of images of each shard.
 

@@ -1,6 +1,6 @@
 """Random streams by name: each thing that is drawn has its own, so that a new one changes none of the others.
 
-Within one stream the order of the draws matters: whoever adds a draw to a group adds it last.
+Within one stream the order of the draws matters: a new draw of a group comes last.
 """
 
 from enum import IntEnum, unique

@@ -3,12 +3,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from models.ring.train.export import export_ring
 
 from models.classifier import export as export_file
 from models.classifier.export import Contract, export, read_network
 from models.classifier.network import STATISTICS, WeldNet
 from models.errors import LearningError
+from models.ring.export import export_ring
 from models.ring.network import RingNet
 from models.ring.pair import pair_rings
 from station.classify.onnx import CLASSES, Classifier, RingNetwork

@@ -39,7 +39,7 @@ def test_same_bytes_from_a_cluster(tmp_path: Path, model: WeldModel) -> None:
     )
     assert done.returncode == 0, done.stderr
     order = Order(seed=3, count=30, recipe=PAPER, switches=ALL, is_straight=True)
-    write_dataset(tmp_path / "here", order, model, None, lambda n: None)
+    write_dataset(tmp_path / "here", order, model, executor=None, done=lambda n: None)
     for path in (tmp_path / "here").rglob("*.*"):
         assert path.read_bytes() == (out / path.relative_to(tmp_path / "here")).read_bytes(), path
 

@@ -98,7 +98,7 @@ def test_a_ring_has_no_hole_where_no_bead_holds_it() -> None:
 def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel) -> None:
     from pycocotools.coco import COCO
 
-    write_dataset(tmp_path, order(40, heights=True), model, None, lambda n: None)
+    write_dataset(tmp_path, order(40, heights=True), model, executor=None, done=lambda n: None)
     manifest = json.loads((tmp_path / "manifest.json").read_text())
     assert len(manifest["images"]) == 40
     for entry in manifest["images"]:
@@ -137,9 +137,9 @@ def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel
 @pytest.mark.parametrize("flat", [True, False])
 def test_same_seed_same_bytes_on_one_and_two_workers(flat: bool, tmp_path: Path, model: WeldModel) -> None:
     count = 60 if flat else 30
-    write_dataset(tmp_path / "here", order(count, flat), model, None, lambda n: None)
+    write_dataset(tmp_path / "here", order(count, flat), model, executor=None, done=lambda n: None)
     with workers(2) as pool:
-        write_dataset(tmp_path / "two", order(count, flat), model, pool, lambda n: None)
+        write_dataset(tmp_path / "two", order(count, flat), model, executor=pool, done=lambda n: None)
     assert tree(tmp_path / "here") == tree(tmp_path / "two")
     for entry in json.loads((tmp_path / "here" / "manifest.json").read_text())["images"]:
         assert bool(entry["defects"]) == (entry["kind"] != "ok")
@@ -148,19 +148,19 @@ def test_same_seed_same_bytes_on_one_and_two_workers(flat: bool, tmp_path: Path,
 
 @pytest.mark.render
 def test_what_is_finished_is_not_made_again(tmp_path: Path, model: WeldModel) -> None:
-    write_dataset(tmp_path / "whole", order(50), model, None, lambda n: None)
+    write_dataset(tmp_path / "whole", order(50), model, executor=None, done=lambda n: None)
     whole = tree(tmp_path / "whole")
     again = tmp_path / "again"
-    write_dataset(again, order(50), model, None, lambda n: None)
+    write_dataset(again, order(50), model, executor=None, done=lambda n: None)
     (again / "shards" / "00001.json").unlink()
     for entry in json.loads((tmp_path / "whole" / "shards" / "00001.json").read_text())[::2]:
         (again / entry["file"]).unlink()
     seen: list[int] = []
-    write_dataset(again, order(50), model, None, seen.append)
+    write_dataset(again, order(50), model, executor=None, done=seen.append)
     assert sorted(seen) == [2, 24, 24]
     assert tree(again) == whole
     with pytest.raises(SynthError, match=r"begun with another seed; name an empty folder"):
-        write_dataset(again, order(50, seed=4), model, None, lambda n: None)
+        write_dataset(again, order(50, seed=4), model, executor=None, done=lambda n: None)
 
 
 def command(out: Path, *more: str) -> list[str]:
