@@ -24,9 +24,6 @@ SIZE = 2000
 """Points on each side of the map."""
 HEIGHT_STEP_UM = 0.05
 """Resolution of the heights in the file."""
-INSTRUMENT = "<Serial>none</Serial><Version>1</Version>"
-PROBE = "<ProbingSystem><Type>Software</Type><Identification>synth.made</Identification>"
-"""Entries of the shipped file."""
 NOTE = (
     "MADE, NOT MEASURED: an artificial surface (overlapping frozen melt pools, partner step, noise, "
     "lost points) in place of a white-light interferometer measurement of a real weld"
@@ -101,33 +98,54 @@ def write_x3p(path: Path, height_um: Array, valid: NDArray[np.bool_], *, step_um
     """Write an x3p file (ISO 25178-72): int16 heights, a mask of valid points, the note as its comment."""
     counts = np.where(valid, np.clip(np.round(height_um / HEIGHT_STEP_UM), -32768, 32767), 0).astype("<i2")
     data, mask = counts.tobytes(), np.packbits(valid.ravel(), bitorder="little").tobytes()
-    rows, columns = height_um.shape
-    data_md5, mask_md5 = (hashlib.md5(content).hexdigest().upper() for content in (data, mask))
-    step_m, height_m = f"{step_um * 1e-6:.9g}", f"{HEIGHT_STEP_UM * 1e-6:.9g}"
-    record = f"""<?xml version="1.0" encoding="UTF-8"?>
-<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
-<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>
-<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_m}</Increment><Offset>0</Offset></CX>
-<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{step_m}</Increment><Offset>0</Offset></CY>
-<CZ><AxisType>A</AxisType><DataType>I</DataType><Increment>{height_m}</Increment><Offset>0</Offset></CZ>
-</Axes></Record1>
-<Record2><Date>2026-11-22T00:00:00</Date><Creator>weldgate</Creator>
-<Instrument><Manufacturer>weldgate</Manufacturer><Model>made surface</Model>{INSTRUMENT}</Instrument>
-<CalibrationDate>2026-11-22T00:00:00</CalibrationDate>{PROBE}
-</ProbingSystem><Comment>{note}</Comment></Record2>
-<Record3><MatrixDimension><SizeX>{columns}</SizeX><SizeY>{rows}</SizeY><SizeZ>1</SizeZ></MatrixDimension>
-<DataLink><PointDataLink>bindata/data.bin</PointDataLink><MD5ChecksumPointData>{data_md5}</MD5ChecksumPointData>
-<ValidPointsLink>bindata/valid.bin</ValidPointsLink><MD5ChecksumValidPoints>{mask_md5}</MD5ChecksumValidPoints>
-</DataLink></Record3>
-<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
-</p:ISO5436_2>
-"""
+    record = _record(height_um.shape, step_um, note, data_md5=_md5(data), mask_md5=_md5(mask))
     members = {
         "main.xml": record.encode(),
         "bindata/data.bin": data,
         "bindata/valid.bin": mask,
-        "md5checksum.hex": f"{hashlib.md5(record.encode()).hexdigest()} *main.xml\n".encode(),
+        "md5checksum.hex": f"{_md5(record.encode()).lower()} *main.xml\n".encode(),
     }
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name, content in members.items():
             archive.writestr(zipfile.ZipInfo(name, (2026, 11, 22, 0, 0, 0)), content, zipfile.ZIP_DEFLATED, 9)
+
+
+def _md5(content: bytes) -> str:
+    return hashlib.md5(content).hexdigest().upper()
+
+
+def _record(shape: tuple[int, ...], step_um: float, note: str, *, data_md5: str, mask_md5: str) -> str:
+    """Return the description in the file."""
+    rows, columns = shape
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">',
+        "<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>",
+        _axis("CX", "I", "D", step_um),
+        _axis("CY", "I", "D", step_um),
+        _axis("CZ", "A", "I", HEIGHT_STEP_UM),
+        "</Axes></Record1>",
+        "<Record2><Date>2026-11-22T00:00:00</Date><Creator>weldgate</Creator>",
+        "<Instrument><Manufacturer>weldgate</Manufacturer><Model>made surface</Model>"
+        "<Serial>none</Serial><Version>1</Version></Instrument>",
+        "<CalibrationDate>2026-11-22T00:00:00</CalibrationDate>"
+        "<ProbingSystem><Type>Software</Type><Identification>synth.made</Identification>",
+        f"</ProbingSystem><Comment>{note}</Comment></Record2>",
+        f"<Record3><MatrixDimension><SizeX>{columns}</SizeX><SizeY>{rows}</SizeY>"
+        "<SizeZ>1</SizeZ></MatrixDimension>",
+        "<DataLink><PointDataLink>bindata/data.bin</PointDataLink>"
+        f"<MD5ChecksumPointData>{data_md5}</MD5ChecksumPointData>",
+        "<ValidPointsLink>bindata/valid.bin</ValidPointsLink>"
+        f"<MD5ChecksumValidPoints>{mask_md5}</MD5ChecksumValidPoints>",
+        "</DataLink></Record3>",
+        "<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>",
+        "</p:ISO5436_2>",
+    ]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _axis(name: str, axis_type: str, data_type: str, step_um: float) -> str:
+    return (
+        f"<{name}><AxisType>{axis_type}</AxisType><DataType>{data_type}</DataType>"
+        f"<Increment>{step_um * 1e-6:.9g}</Increment><Offset>0</Offset></{name}>"
+    )

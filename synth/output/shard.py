@@ -134,7 +134,21 @@ def _unwrap_map(values: NDArray[np.float32], ring: Ring) -> NDArray[np.float32]:
 
 
 def _entry(kind: str, m: Mask) -> dict[str, Any]:
-    return {"kind": kind, "box_px": _box(m), "area_px": int(m.sum()), "polygon_px": _polygons(m)}
+    """Return the manifest entry of a defect: `rle` is its exact mask, `polygon_px` its outer borders."""
+    return {
+        "kind": kind,
+        "box_px": _box(m),
+        "area_px": int(m.sum()),
+        "polygon_px": _polygons(m),
+        "rle": run_lengths(m),
+    }
+
+
+def run_lengths(m: Mask) -> dict[str, list[int]]:
+    """Return a mask as COCO's uncompressed run lengths: column by column, the first run outside the mask."""
+    flat = np.concatenate([[False], m.ravel(order="F"), [not m[-1, -1]]])
+    ends = np.flatnonzero(flat[1:] != flat[:-1])
+    return {"size": list(m.shape), "counts": np.diff(ends, prepend=0).tolist()}
 
 
 def _box(m: Mask) -> tuple[int, int, int, int]:

@@ -23,6 +23,7 @@ from synth.errors import SynthError
 from synth.measured.spectrum import WeldModel
 from synth.output.dataset import Order, workers, write_dataset
 from synth.output.plan import CROP_KINDS, RING_ERROR_DEG, plan_pieces, plan_rings, quotas, sure_kind
+from synth.output.shard import run_lengths
 from synth.part.part import draw_part
 from synth.part.switches import ALL
 from synth.recipes.named import PAPER, WIDE
@@ -93,10 +94,21 @@ def test_a_ring_has_no_hole_where_no_bead_holds_it() -> None:
     assert seen > 20
 
 
+@given(st.integers(1, 6), st.integers(1, 6), st.data())
+def test_run_lengths_give_the_mask_back(height: int, width: int, data: st.DataObject) -> None:
+    bits = data.draw(st.lists(st.booleans(), min_size=height * width, max_size=height * width))
+    mask = np.array(bits, bool).reshape(height, width)
+    runs = run_lengths(mask)
+    assert runs["size"] == [height, width]
+    values = np.repeat(np.arange(len(runs["counts"])) % 2 == 1, runs["counts"])
+    assert (values.reshape(width, height).T == mask).all()
+
+
 @pytest.mark.render
 @pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")  # inside pycocotools
 def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel) -> None:
     from pycocotools.coco import COCO
+    from pycocotools.mask import decode, frPyObjects
 
     write_dataset(tmp_path, order(40, heights=True), model, executor=None, done=lambda n: None)
     manifest = json.loads((tmp_path / "manifest.json").read_text())
@@ -120,6 +132,9 @@ def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel
         for line, defect in zip(lines, entry["defects"], strict=True):
             label, x, y, w, h = (float(v) for v in line.split())
             assert ("hole", "missing_weld")[int(label)] == defect["kind"] == entry["kind"]
+            exact = decode(frPyObjects(defect["rle"], 128, 128)) > 0
+            assert exact.sum() == defect["area_px"]
+            assert not (exact & ~shown).any()
             left, top, width, height_px = defect["box_px"]
             assert [x * 128, y * 128, w * 128, h * 128] == pytest.approx(
                 [left + width / 2, top + height_px / 2, width, height_px], abs=1e-3
