@@ -1,6 +1,4 @@
-"""An artificial surface measurement of a weld, in place of a real one.
-
-It is made by another method than the generator's own.
+"""An artificial surface measurement of a weld, in place of a real one; made by a method of its own.
 
 Each laser pulse leaves a lens of melt that freezes over the lenses before it, as in a pulsed seam weld; of
 each, only what the later ones leave uncovered can be seen. Partner step, tilt, noise and lost points are

@@ -16,6 +16,7 @@ from station.vision.unwrap import unwrap
 from synth.camera.frames import Image, Window, frame_window, ring_window
 from synth.camera.optics import Optics
 from synth.camera.projection import ring_px
+from synth.errors import SynthError
 from synth.measured.spectrum import WeldModel
 from synth.output.labels import label, mask, outlines, strip_mask
 from synth.output.storage import claim, write_image, write_text
@@ -45,10 +46,15 @@ class LotOrder:
 
 
 def plan(seed: int, count: int, recipe: Recipe) -> Iterator[tuple[int, str | None]]:
-    """Yield the seed and the kind of defect of each part: the recipe's weights hold in any long stretch."""
+    """Yield the seed and the kind of defect of each part: the recipe's weights hold in any long stretch.
+
+    Raises SynthError if all weights are 0.
+    """
     rng = stream(seed, Stream.LOT)
     kinds = [None, *recipe.defects]
     weights = np.array([recipe.ok_weight, *(ranges.weight for ranges in recipe.defects.values())])
+    if weights.sum() <= 0:
+        raise SynthError("ok_weight and the weights of all kinds of defect are 0; raise one of them")
     for index in range(count):
         yield seed * 1_000_000 + index, kinds[int(rng.choice(len(kinds), p=weights / weights.sum()))]
 

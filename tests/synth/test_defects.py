@@ -13,7 +13,9 @@ from station.defects import KINDS
 from synth.defects.hole import Hole, HoleRanges
 from synth.defects.kinds import RANGES, ranges_of
 from synth.defects.missing_weld import MissingWeld, MissingWeldRanges
+from synth.errors import SynthError
 from synth.measured.spectrum import WeldModel
+from synth.output.lot import plan
 from synth.part.bead import Bead
 from synth.part.geometry import StraightPiece
 from synth.part.part import draw_part
@@ -71,6 +73,18 @@ def test_what_is_drawn_for_a_piece_is_seen_on_it(name: str) -> None:
             assert angle.min() < 0.8 * end
 
 
+def test_a_lot_has_the_weights_of_its_recipe() -> None:
+    kinds = [kind for _, kind in plan(3, 2000, LINE)]
+    assert len(set(plan(3, 2000, LINE))) == 2000
+    total = LINE.ok_weight + sum(ranges.weight for ranges in LINE.defects.values())
+    assert kinds.count(None) / 2000 == pytest.approx(LINE.ok_weight / total, abs=0.04)
+    for name, ranges in LINE.defects.items():
+        assert kinds.count(name) / 2000 == pytest.approx(ranges.weight / total, abs=0.04)
+    none = {name: replace(ranges, weight=0.0) for name, ranges in LINE.defects.items()}
+    with pytest.raises(SynthError, match="weights of all kinds of defect are 0"):
+        next(plan(3, 1, replace(LINE, ok_weight=0.0, defects=none)))
+
+
 def test_a_new_kind_changes_no_other_draw() -> None:
     usual, more = LINE, replace(LINE, defects={**LINE.defects, "dent": HoleRanges(weight=5.0)})
     for seed in range(20):
@@ -91,13 +105,12 @@ def test_a_new_kind_changes_no_other_draw() -> None:
 def test_a_hole_is_as_long_and_wide_as_stated(
     length: float, width: float, d: float, a: int, b: int, angle: float
 ) -> None:
-    part = draw_part(
-        1, LINE, defects=(hole(angle, length_mm=length, width_mm=width, deformation=d, a=a, b=b),)
-    )
-    at, radius = part.defects[0].outline(contour(part, THETA))
+    planted = hole(angle, length_mm=length, width_mm=width, deformation=d, a=a, b=b)
+    part = draw_part(1, LINE)
+    at, radius = planted.outline(contour(part, np.linspace(0, 1, 8)))
     assert np.ptp(at) * part.bead.radius_mm == pytest.approx(length, rel=1e-6)
     assert np.ptp(radius) == pytest.approx(width, rel=1e-6)
-    start, end = part.defects[0].span_deg(part.bead)
+    start, end = planted.span_deg(part.bead)
     assert np.rad2deg([at.min(), at.max()]) == pytest.approx([start, end])
 
 
