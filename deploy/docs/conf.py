@@ -11,6 +11,7 @@ add_module_names = False
 toc_object_entries = False
 python_use_unqualified_type_names = True
 suppress_warnings = ["config.cache", "ref.python"]  # a field named as a type is not an error
+myst_enable_extensions = ["deflist"]
 myst_heading_anchors = 4
 html_theme = "furo"
 html_title = f"weldgate {__version__}"

@@ -62,7 +62,7 @@ def _section(package: str, rooms: Rooms, root: Path) -> str:
             HEADINGS[package],
             "",
             "```{raw} html",
-            drawing,
+            f'<div class="drawing">{drawing}</div>',
             "```",
             "",
             "| room | files | what it holds |",

@@ -133,6 +133,9 @@ def _written(
     copy.parent.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(root / path, copy)
     if found[1] and path.endswith(".svg"):
+        copy.write_text(
+            f'<div class="drawing">{(root / path).read_text(encoding="utf-8")}</div>', encoding="utf-8"
+        )
         return f"```{{raw}} html\n:file: {copy.resolve()}\n```"
     if found[1]:
         return f"![{found[2]}](/files/{path})"
