@@ -14,10 +14,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from station.domain import Image
 from station.files.image import read_image
 from tests.parts import FRAMES, labels
+
+# a deadline of hypothesis is a speed test, which a busy machine fails
+settings.register_profile("weldgate", deadline=None)
+settings.load_profile("weldgate")
 
 ROOT = Path(__file__).resolve().parent.parent
 RING_MODEL = ROOT / "models" / "shipped" / "ring.onnx"

@@ -445,4 +445,4 @@ class AnyInputs(RuleBasedStateMachine):
 
 
 TestAnyInputs = AnyInputs.TestCase
-TestAnyInputs.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)
+TestAnyInputs.settings = settings(max_examples=60, stateful_step_count=40)

@@ -2,7 +2,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from station.classify.decision import findings, mean_of, near_threshold, rejected_kinds, segment_kind
@@ -82,7 +82,6 @@ SCORES = st.lists(
 )
 
 
-@settings(deadline=None)
 @given(SCORES, st.floats(0.05, 0.95), st.integers(0, 2**31))
 def test_every_refused_segment_lies_in_a_finding_and_without_one_none_is_refused(
     raw: list[tuple[float, float, float]], limit: float, seed: int
@@ -156,7 +155,6 @@ def test_a_segment_may_have_a_limit_of_its_own() -> None:
     assert [i for i, kind in enumerate(rejected_kinds(scores, found, limits)) if kind] == [4]
 
 
-@settings(deadline=None)
 @given(SCORES, st.floats(0.05, 0.95), st.floats(0, 3), st.floats(0, 3), st.integers(0, 2**31))
 def test_least_lengths_only_tolerate_and_without_them_every_segment_over_its_limit_is_refused(
     raw: list[tuple[float, float, float]], limit: float, hole_mm: float, missing_mm: float, seed: int

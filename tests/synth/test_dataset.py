@@ -47,7 +47,7 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 
 @given(st.integers(1, 400), st.integers(0, 10**6))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_the_plan_holds_exactly_what_is_ordered(count: int, seed: int) -> None:
     wanted = quotas(count)
     assert sum(wanted.values()) == count

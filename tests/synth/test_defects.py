@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import synth.defects
@@ -102,7 +102,6 @@ def test_a_new_kind_changes_no_other_draw() -> None:
     st.integers(2, 3),
     st.floats(0, 360),
 )
-@settings(deadline=None)
 def test_a_hole_is_as_long_and_wide_as_stated(
     length: float, width: float, d: float, a: int, b: int, angle: float
 ) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from synth.camera.optics import Optics
@@ -29,7 +29,6 @@ KINDS = (None, *LINE.defects)
 
 
 @given(SEEDS, st.sampled_from(KINDS))
-@settings(deadline=None)
 def test_same_seed_same_part_of_the_requested_kind(seed: int, kind: str | None) -> None:
     part = draw_part(seed, LINE, kind=kind)
     assert part == draw_part(seed, LINE, kind=kind)
@@ -71,7 +70,6 @@ def test_values_are_drawn_evenly_from_their_ranges(name: str) -> None:
 
 
 @given(SEEDS)
-@settings(deadline=None)
 def test_the_ring_lies_where_the_camera_equation_puts_it(seed: int) -> None:
     part = draw_part(seed, LINE)
     x, y, radius = ring_px(part, Optics())
@@ -92,7 +90,6 @@ def test_pixel_pitch_is_13_um() -> None:
     st.floats(-3.0, 3.0),
     st.floats(-1.0, 1.0),
 )
-@settings(deadline=None)
 def test_weld_coordinates_are_the_inverse_of_embedding(
     form: Form, radius: float, angle: float, away: float
 ) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from synth.errors import SynthError
@@ -25,7 +25,6 @@ from synth.measured.spectrum import (
 
 
 @given(st.integers(0, 10**6), st.integers(5, 24), st.integers(5, 24))
-@settings(deadline=None)
 def test_a_new_surface_keeps_the_amplitudes_within_the_variation(seed: int, rows: int, columns: int) -> None:
     rng = np.random.default_rng(seed)
     kept = kept_amplitude(rng.normal(size=(rows, columns)))
@@ -71,7 +70,6 @@ def test_planted_shift_pitch_and_edge_are_found(planted_file: Path) -> None:
 
 
 @given(st.floats(0.05, 0.4), st.floats(0.15, 0.4), st.floats(0.1, 0.25))
-@settings(deadline=None)
 def test_any_planted_row_shift_is_found(height: float, sigma: float, pitch: float) -> None:
     y = (np.arange(200) - 99.5) * 0.005
     shift = height * np.exp(-0.5 * (y / sigma) ** 2)
@@ -83,7 +81,6 @@ def test_any_planted_row_shift_is_found(height: float, sigma: float, pitch: floa
 
 
 @given(st.floats(0.01, 0.1), st.floats(-0.1, 0.1), st.floats(0.15, 0.35), st.floats(-0.05, 0.05))
-@settings(deadline=None)
 def test_any_planted_edge_over_a_partner_step_is_found(
     height: float, center: float, sigma: float, slope: float
 ) -> None:

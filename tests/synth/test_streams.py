@@ -4,7 +4,7 @@ from dataclasses import fields
 from itertools import permutations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from synth.part.part import draw_part
@@ -15,7 +15,6 @@ GROUPS = ("pose", "bead", "joint", "relief", "surface", "dirt", "light", "sensor
 
 
 @given(st.integers(0, 2**31))
-@settings(deadline=None)
 def test_no_two_streams_are_alike(seed: int) -> None:
     first = {name: stream(seed, name).random() for name in Stream}
     assert len(set(first.values())) == len(Stream)
@@ -23,7 +22,6 @@ def test_no_two_streams_are_alike(seed: int) -> None:
 
 
 @given(st.integers(0, 10**6), st.text(min_size=1, max_size=12), st.text(min_size=1, max_size=12))
-@settings(deadline=None)
 def test_a_stream_splits_by_name_and_number(seed: int, one: str, other: str) -> None:
     draws = [stream(seed, Stream.DEFECTS, key).random() for key in (one, other, 7, 8)]
     assert (draws[0] == draws[1]) == (one == other)
