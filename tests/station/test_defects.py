@@ -48,11 +48,15 @@ CODES = {
         "internal error": 16,
     }
 }
-"""What a PLC that was programmed against each version of the map reads; entries are added, never changed."""
+"""What a PLC that was programmed against each version of the map reads; entries are added, never changed.
+
+A version that changes no code needs no entry.
+"""
 
 
 def test_the_plc_codes_of_a_map_version_never_change() -> None:
-    assert {str(reason): reason.code for reason in Reason}.items() >= CODES[MAP_VERSION].items()
+    pinned = CODES[max(version for version in CODES if version <= MAP_VERSION)]
+    assert {str(reason): reason.code for reason in Reason}.items() >= pinned.items()
     assert len({reason.code for reason in Reason}) == len(Reason)
 
 
