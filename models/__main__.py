@@ -228,8 +228,8 @@ def _first_day(arguments: argparse.Namespace) -> int:
     for line in found.lines():
         _print(line)
     if arguments.reference is not None:
-        refused = "no reference written. Remove or correct the parts named above"
-        _print(f"reference: {arguments.reference}" if found.good else refused)
+        nothing = "no reference written. Remove or correct the parts named above"
+        _print(f"reference: {arguments.reference}" if found.good else nothing)
     return 0 if found.good else 1
 
 

@@ -111,7 +111,7 @@ def test_a_lot_is_cut_at_its_labelled_rings(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "problem"),
     [
         ({"frame": "absent.png"}, "absent.png: the image is missing"),
         ({"frame": "bad.png"}, "not a readable image"),
@@ -123,8 +123,8 @@ def test_a_lot_is_cut_at_its_labelled_rings(tmp_path: Path) -> None:
         ({"defects": None}, "lacks or garbles"),
     ],
 )
-def test_wrong_lots_are_refused(changes: dict[str, object], said: str, tmp_path: Path) -> None:
-    with pytest.raises(LearningError, match=said):
+def test_wrong_lots_are_refused(changes: dict[str, object], problem: str, tmp_path: Path) -> None:
+    with pytest.raises(LearningError, match=problem):
         read_lot(lot(tmp_path, **changes))
 
 

@@ -41,7 +41,7 @@ def _remove(folder: Path, name: str) -> None:
 
 
 def _garble(folder: Path, name: str) -> None:
-    (folder / name).write_bytes(b"not a picture")
+    (folder / name).write_bytes(b"not an image")
 
 
 def _resize(folder: Path, name: str) -> None:
@@ -63,7 +63,7 @@ def _misname(folder: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("spoil", "problem"),
     [
         (_remove, "000000.png: missing"),
         (_garble, "000000.png: not a readable image"),
@@ -73,9 +73,9 @@ def _misname(folder: Path, name: str) -> None:
         (_misname, "000000.png: the manifest calls it hole"),
     ],
 )
-def test_what_is_wrong_with_a_dataset_is_listed(spoil, said: str, folder: Path) -> None:  # type: ignore[no-untyped-def]
+def test_what_is_wrong_with_a_dataset_is_listed(spoil, problem: str, folder: Path) -> None:  # type: ignore[no-untyped-def]
     spoil(folder, "images/train/ok/000000.png")
-    with pytest.raises(LearningError, match=said):
+    with pytest.raises(LearningError, match=problem):
         read_rendered([folder])
 
 

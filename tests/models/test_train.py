@@ -197,9 +197,9 @@ def test_a_users_mistake_is_one_line(
     command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([str(tmp_path / a) if a in ("absent", "x") else a for a in command]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert "absent" in said
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert "absent" in message
 
 
 @pytest.mark.parametrize(("option", "value"), [("--steps", "0"), ("--seeds", "-1")])
