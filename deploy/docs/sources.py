@@ -26,7 +26,7 @@ ELSEWHERE = {
 }
 """Pages that lie elsewhere in the repository, because tools or people look for them there."""
 NAVIGATION = (
-    ("Begin", ("tutorial", "glossary")),
+    ("Begin", ("tutorial", "window", "commands", "glossary")),
     ("Integrate", ("plc/index", "plc/register-map", "troubleshooting", "records")),
     ("Understand", ("architecture", "rooms", "decisions/index", "networks/classifier", "networks/ring")),
     ("Change", ("how-to/index", "contributing", "api/index", "changelog")),

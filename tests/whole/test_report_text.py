@@ -172,7 +172,7 @@ def filled(value: Any, text: str) -> Any:
 
 
 def test_hostile_names_are_shown_and_nothing_else_comes_of_them(pages: Pages) -> None:
-    assert [template.parent.name for template in pages] == ["report", "replay", "models"]
+    assert [template.parent.name for template in pages] == ["report", "replay", "evaluation"]
     for template, (_, text) in pages.items():
         seen = Seen(text)
         assert {tag for tag, *_ in seen.elements} <= ELEMENTS
