@@ -6,9 +6,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from station.errors import RecordError
-from station.files.sqlite import CHAIN_START, PATIENCE_S, use_wal
+from station.files.sqlite import CHAIN_START, use_wal
 from station.journal.journal import COLUMNS, NAME, Entry, Kind, link_entry
 
+PATIENCE_S = 5.0
+"""Time for which other processes are waited for.
+
+SQLite is not fair: of several that write without a pause on a busy machine, one may well wait for two seconds.
+"""
 SCHEMA = (
     """CREATE TABLE IF NOT EXISTS entries (
     number INTEGER PRIMARY KEY AUTOINCREMENT,

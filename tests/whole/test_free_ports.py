@@ -25,7 +25,7 @@ def test_a_free_port_is_kept_from_others_and_open_to_a_server() -> None:
 
     async def serve() -> None:
         words = STATUS_START + STATUS_WORDS
-        server = ModbusServer("127.0.0.1", port, words, range(STATUS_START, words), lambda: None)
+        server = ModbusServer("127.0.0.1", port, words=words, writable=range(STATUS_START, words))
         await server.start()
         await server.stop()
 
