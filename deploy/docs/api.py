@@ -9,8 +9,6 @@ from pathlib import Path
 
 from deploy.docs.rooms import PACKAGES
 
-_AMBIGUOUS = ("type",)
-"""Built-in names that are also names of fields."""
 _CODE = re.compile(r"(`[^`\n]+`)")
 _SPECIAL = re.compile(r"([\\*|_`])")
 _MARKUP = re.compile(r"^([-+*:.>]|\d+[.)]|\w[.)]\s)")
@@ -73,7 +71,7 @@ class _Qualified(ast.NodeTransformer):
     """Writes the names in annotations in full, so that each leads to the right one of several of that name."""
 
     def __init__(self, tree: ast.Module, module: str) -> None:
-        self._full = {name: f"builtins.{name}" for name in _AMBIGUOUS}
+        self._full: dict[str, str] = {}
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module:
                 self._full |= {
