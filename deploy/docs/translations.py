@@ -1,27 +1,36 @@
-"""Texts of the window into weldgate_de.ts, that into weldgate_de.qm. New texts are listed: translate them in the .ts file (Qt Linguist)."""
+"""Brings the German of the window up to date: texts of the code into weldgate_de.ts, that into weldgate_de.qm.
+
+New texts are listed: translate them in the .ts file (Qt Linguist) and run this again.
+"""
 
 import subprocess
 import sys
+import tempfile
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+
+from deploy.docs.window_words import as_source, window_words
 
 PANEL = Path(__file__).resolve().parents[2] / "station" / "panel"
 TS = PANEL / "languages" / "weldgate_de.ts"
 
 
 def update(ts: Path) -> None:
-    """Bring a .ts file up to the code; what it has translated stays."""
-    sources = [str(path) for path in sorted(PANEL.rglob("*.py"))]
-    _tool("lupdate", *sources, "-ts", str(ts), "-no-obsolete", "-locations", "none")
+    """Bring a .ts file up to date with the code; existing translations stay."""
+    with tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
+        words = Path(folder) / "words.py"
+        words.write_text(as_source(window_words()), encoding="utf-8")
+        sources = [str(path) for path in (*sorted(PANEL.rglob("*.py")), words)]
+        _tool("lupdate", *sources, "-ts", str(ts), "-no-obsolete", "-locations", "none")
 
 
 def release(ts: Path, qm: Path) -> None:
-    """The binary file that the window reads."""
+    """Write the binary file that the window reads."""
     _tool("lrelease", str(ts), "-qm", str(qm))
 
 
 def untranslated(ts: Path) -> list[str]:
-    """Texts that nobody has translated."""
+    """Return the texts that have no translation."""
     messages = ElementTree.parse(ts).getroot().iter("message")
     return [m.findtext("source") or "" for m in messages if not (m.findtext("translation") or "").strip()]
 
@@ -34,7 +43,7 @@ def _tool(name: str, *arguments: str) -> None:
 
 
 def main() -> int:
-    """0 if everything is translated."""
+    """Update both files and list what is not translated. Return 0 if everything is translated, else 1."""
     update(TS)
     release(TS, TS.with_suffix(".qm"))
     missing = untranslated(TS)

@@ -10,7 +10,7 @@ from station.channel.events import STATUS_LOST_S, PartEvent, StatusEvent
 from station.defects import Reason
 from station.domain import Inspection, Origin, Purpose
 from station.panel.session.lamp import FRESH_S, GONE_S, WHY_OFFLINE, Tone, lamp
-from station.plc.map.alarms import Alarm
+from station.plc.map.alarms import TEXTS, Alarm
 from station.plc.map.registers import Offline, VerdictCode
 from tests.panel.made import part, status
 from tests.parts import nok_inspection, ok_inspection
@@ -42,11 +42,15 @@ def test_words_symbols_and_colours(event: PartEvent | None, word: str, symbol: s
 @pytest.mark.parametrize(
     ("said", "word", "detail"),
     [
-        (None, "OFFLINE", "no word from the engine"),
-        (status(Offline.PLC_SILENT, at_s=NOW_S), "PLC LOST", "the PLC's heartbeat stands still"),
-        (status(Offline.CAMERA_LOST, camera="camera 1: cable", at_s=NOW_S), "OFFLINE", "camera lost"),
+        (None, "OFFLINE", "no connection to the engine"),
+        (status(Offline.PLC_SILENT, at_s=NOW_S), "PLC LOST", TEXTS[Alarm.PLC_SILENT].cause),
+        (
+            status(Offline.CAMERA_LOST, camera="camera 1: cable", at_s=NOW_S),
+            "OFFLINE",
+            TEXTS[Alarm.CAMERA_LOST].cause,
+        ),
         (status(Offline.NOT_ENABLED, at_s=NOW_S), "OFFLINE", "the PLC has not enabled the station"),
-        (status(Offline.SERVICE, service="Ada", at_s=NOW_S), "SERVICE", "works on the station"),
+        (status(Offline.SERVICE, service="Ada", at_s=NOW_S), "SERVICE", "is working on the station"),
     ],
 )
 def test_what_is_lost_is_told_apart_and_no_green_covers_it(

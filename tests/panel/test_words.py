@@ -4,22 +4,30 @@ import shutil
 import xml.etree.ElementTree as ElementTree
 from itertools import product
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from deploy.docs.translations import TS, release, untranslated, update
+from deploy.docs.window_words import ONE_FOR_EACH_LEVEL, spoken, window_words
+from station.channel.requests import FAULT, TOO_OLD
 from station.defects import Reason
-from station.domain import Origin, Purpose
+from station.domain import Origin, Purpose, Verdict
+from station.engine.operator_desk import OTHER_SERVES
+from station.engine.operator_requests import TOO_MANY
+from station.engine.rights import needed
+from station.engine.settings_change import NO_MOMENT
+from station.engine.settings_use import CAMERA_REFUSES, RELOAD_REFUSED
 from station.journal.journal import Kind
 from station.journal.reviews import Opinion, State
 from station.journal.users import Level
 from station.panel.look import words
 from station.panel.look.theme import THEMES, Colors
-from station.panel.look.vocabulary import WORDS
 from station.panel.session.lamp import WHY_OFFLINE
-from station.plc.map.alarms import TEXTS
+from station.panel.session.pending import NO_CONNECTION
+from station.plc.map.alarms import TEXTS, Explained
 
 
 def messages(ts: Path) -> set[tuple[str, str, str]]:
@@ -47,19 +55,71 @@ def test_places_for_values_are_in_the_translation_too() -> None:
             assert (place in source) == (place in german)
 
 
-def test_the_vocabulary_has_every_word_of_the_station() -> None:
-    needed = [
-        *Reason,
-        *Origin,
-        *Purpose,
-        *Kind,
-        *Opinion,
-        *State,
-        *WHY_OFFLINE.values(),
-        *(level.name.lower() for level in Level),
+def test_a_new_kind_of_defect_or_alarm_is_translated_without_another_list(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setitem(TEXTS, 0x3FFF, Explained("the coolant leaks", "close the valve"))
+    ts = tmp_path / TS.name
+    shutil.copy(TS, ts)
+    update(ts)
+    assert sorted(untranslated(ts)) == ["close the valve", "the coolant leaks"]
+
+
+def test_the_words_of_the_station_are_collected_where_they_are_said() -> None:
+    found = window_words()
+    expected = [*Verdict, *Reason, *Origin, *Purpose, *Kind, *Opinion, *State, *WHY_OFFLINE.values()]
+    expected += [level.name.lower() for level in Level]
+    expected += [text for explained in TEXTS.values() for text in (explained.cause, explained.action)]
+    expected += [
+        TOO_OLD,
+        FAULT,
+        OTHER_SERVES,
+        TOO_MANY,
+        NO_MOMENT,
+        CAMERA_REFUSES,
+        RELOAD_REFUSED,
+        NO_CONNECTION,
     ]
-    needed += [text for explained in TEXTS.values() for text in (explained.cause, explained.action)]
-    assert {str(word) for word in needed} <= set(WORDS)
+    assert {str(word) for word in expected} <= set(found)
+    assert len(found) == len(set(found))
+
+
+def test_every_refusal_for_want_of_a_level_is_collected() -> None:
+    assert {needed(request) for request in ONE_FOR_EACH_LEVEL} == set(Level)
+
+
+SAID = '''
+"""A module."""
+REASON, OTHER = "it is too late", "never seen"
+LIMIT = 4
+TABLE = {1: "one thing", 2: REASON}
+def refuse(name):
+    raise RefusedError(f"at most {LIMIT} are allowed")
+    raise RefusedError(f"{name} is unknown")
+    raise RefusedError(REASON if name else "nobody is there", code="16#1")
+def why(late):
+    return "late again" if late else ""
+'''
+
+
+@pytest.mark.parametrize(
+    ("name", "texts"),
+    [
+        ("RefusedError", ["at most 4 are allowed", "it is too late", "nobody is there"]),
+        ("why", ["late again"]),
+        ("TABLE", ["one thing", "it is too late"]),
+        ("REASON", ["it is too late"]),
+    ],
+)
+def test_texts_are_found_by_the_names_that_they_go_to(tmp_path: Path, name: str, texts: list[str]) -> None:
+    path = tmp_path / "said.py"
+    path.write_text(SAID)
+    module = ModuleType("said")
+    module.__file__ = str(path)
+    vars(module).update(REASON="it is too late", LIMIT=4)
+    assert spoken(module, (name,)) == texts
+    with pytest.raises(LookupError, match="says nothing any more"):
+        spoken(module, (name, "renamed"))
 
 
 def test_german_is_spoken_and_unspoken(qtbot: QtBot) -> None:

@@ -150,14 +150,6 @@
         <translation>SERVICE</translation>
     </message>
     <message>
-        <source>no word from the engine</source>
-        <translation>die Prüfung meldet sich nicht</translation>
-    </message>
-    <message>
-        <source>works on the station</source>
-        <translation>arbeitet an der Station</translation>
-    </message>
-    <message>
         <source>waiting for a part</source>
         <translation>wartet auf ein Teil</translation>
     </message>
@@ -266,10 +258,6 @@
         <translation>Test</translation>
     </message>
     <message>
-        <source>the station starts</source>
-        <translation>die Station startet</translation>
-    </message>
-    <message>
         <source>the PLC has not enabled the station</source>
         <translation>die SPS hat die Station nicht freigegeben</translation>
     </message>
@@ -282,20 +270,8 @@
         <translation>keine Datensätze schreibbar</translation>
     </message>
     <message>
-        <source>the inspection stands still</source>
-        <translation>die Prüfung steht</translation>
-    </message>
-    <message>
-        <source>a recipe is loaded</source>
-        <translation>ein Rezept wird geladen</translation>
-    </message>
-    <message>
         <source>the stored frame is judged differently</source>
         <translation>das gespeicherte Bild wird anders beurteilt</translation>
-    </message>
-    <message>
-        <source>a picture is taken or settings are loaded, as asked for in the window</source>
-        <translation>ein Bild wird aufgenommen oder Einstellungen werden geladen, wie im Fenster verlangt</translation>
     </message>
     <message>
         <source>judge the part again; if it comes back, check that a part lies in the nest, and the camera&apos;s view</source>
@@ -622,14 +598,6 @@
         <translation>ein anderes Modell hat es beurteilt: wo das Fehler sah, ist nicht bekannt</translation>
     </message>
     <message>
-        <source>not to be trusted: see Alarms</source>
-        <translation>nicht verlässlich: siehe Alarme</translation>
-    </message>
-    <message>
-        <source>masters are due: the PLC releases nothing</source>
-        <translation>Meisterteile sind fällig: die SPS gibt nichts frei</translation>
-    </message>
-    <message>
         <source>a login of the level operator is needed</source>
         <translation>eine Anmeldung als Bediener ist nötig</translation>
     </message>
@@ -651,7 +619,51 @@
     </message>
     <message>
         <source>no connection to the engine</source>
-        <translation>keine Verbindung zur Prüfung</translation>
+        <translation>keine Verbindung zum Prüfprogramm</translation>
+    </message>
+    <message>
+        <source>is working on the station</source>
+        <translation>arbeitet an der Station</translation>
+    </message>
+    <message>
+        <source>test image</source>
+        <translation>Testbild</translation>
+    </message>
+    <message>
+        <source>verdict cannot be trusted: see page Alarms</source>
+        <translation>Urteil nicht verlässlich: siehe Seite Alarme</translation>
+    </message>
+    <message>
+        <source>master check is due: the PLC releases no parts</source>
+        <translation>Meisterteilprüfung fällig: die SPS gibt keine Teile frei</translation>
+    </message>
+    <message>
+        <source>the station is starting</source>
+        <translation>die Station startet</translation>
+    </message>
+    <message>
+        <source>records cannot be written</source>
+        <translation>Datensätze nicht schreibbar</translation>
+    </message>
+    <message>
+        <source>the inspection has stopped</source>
+        <translation>die Prüfung steht</translation>
+    </message>
+    <message>
+        <source>a recipe is being loaded</source>
+        <translation>ein Rezept wird geladen</translation>
+    </message>
+    <message>
+        <source>self-test failed</source>
+        <translation>Selbsttest nicht bestanden</translation>
+    </message>
+    <message>
+        <source>an image is being taken or settings are being loaded on request of a window</source>
+        <translation>auf Anforderung eines Fensters wird ein Bild aufgenommen oder werden Einstellungen geladen</translation>
+    </message>
+    <message>
+        <source>no weld was found in it</source>
+        <translation>es wurde keine Naht darin gefunden</translation>
     </message>
     <message>
         <source>the request came too late: nothing was done</source>

@@ -1,32 +1,37 @@
-"""Words in the language in use. English stands in the code; German in weldgate_de.ts, made by `make translations`."""
+"""Translates the texts of the window. English is in the code, German in weldgate_de.ts: see `make translations`."""
 
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QTranslator
 
 LANGUAGES = {"en": "English", "de": "Deutsch"}
+"""Languages of the window, each with its own name for itself."""
 FOLDER = Path(__file__).resolve().parents[1] / "languages"
+"""Folder of the translations."""
 _used: list[QTranslator] = []
 _language = ["en"]
 
 
 def translate(context: str, text: str) -> str:
-    """A text of the code in the language in use."""
+    """Return a text of the window in the language in use."""
     return QCoreApplication.translate(context, text)
 
 
 def data(text: object) -> str:
-    """A word of the station's own vocabulary: kinds, reasons, alarms; listed in `vocabulary`."""
+    """Return a word of the station, such as a kind of defect or an alarm, in the language in use.
+
+    `deploy.docs.window_words` collects these words for the translators; an unknown text is returned as it is.
+    """
     return QCoreApplication.translate("data", str(text))
 
 
 def language() -> str:
-    """The language in use."""
+    """Return the language in use: a key of `LANGUAGES`."""
     return _language[0]
 
 
 def use(name: str) -> None:
-    """Speak another language; texts set before stay as they are."""
+    """Use another language from now on; texts that are already on the screen do not change."""
     app = QCoreApplication.instance()
     if app is None:
         raise RuntimeError("no application to translate")

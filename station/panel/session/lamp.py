@@ -1,19 +1,25 @@
-"""What the big lamp shows, and for how long; pure. A green ages: no old OK stays on the screen."""
+"""What the verdict lamp shows, and for how long; pure. Green fades: no old OK stays on the screen."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 from station.channel.events import STATUS_LOST_S, PartEvent, StatusEvent
 from station.domain import Origin, Purpose, Verdict
-from station.plc.map.alarms import Alarm
+from station.plc.map.alarms import TEXTS, Alarm
 from station.plc.map.registers import Offline, VerdictCode
 
 FRESH_S = 3.0
+"""Age up to which a verdict is shown at full strength."""
 GONE_S = 10.0
+"""Age from which a verdict is no longer shown."""
+IN_SERVICE = "is working on the station"
+"""Says what the person is doing whose name follows."""
+LATE = "result came too late for the PLC"
+"""Why the PLC reads ERROR for a part that was judged."""
 
 
 class Tone(StrEnum):
-    """Colour of the theme."""
+    """Name of a colour of the theme."""
 
     GOOD = "good"
     BAD = "bad"
@@ -23,80 +29,89 @@ class Tone(StrEnum):
 
 
 WHY_OFFLINE = {
-    Offline.STARTING: "the station starts",
+    Offline.STARTING: "the station is starting",
     Offline.NOT_ENABLED: "the PLC has not enabled the station",
     Offline.SET_OFFLINE: "the PLC has set the station offline",
-    Offline.ARCHIVE_FULL: "no records can be written",
-    Offline.STATION_STALLED: "the inspection stands still",
-    Offline.PREPARING: "a recipe is loaded",
-    Offline.SELF_TEST_FAILED: "the stored frame is judged differently",
-    Offline.SERVICE: "works on the station",
-    Offline.ATTENDED: "a picture is taken or settings are loaded, as asked for in the window",
+    Offline.ARCHIVE_FULL: "records cannot be written",
+    Offline.STATION_STALLED: "the inspection has stopped",
+    Offline.PREPARING: "a recipe is being loaded",
+    Offline.SELF_TEST_FAILED: "self-test failed",
+    Offline.SERVICE: IN_SERVICE,
+    Offline.ATTENDED: "an image is being taken or settings are being loaded on request of a window",
 }
-"""For reasons that the lamp has no word of its own for."""
+"""Why the station is offline, for reasons that have no word of their own on the lamp."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Lamp:
-    """Word, symbol and colour; `strength` 1 fresh to 0 faded. `detail` has a word of the vocabulary, `more` what is as it is."""
+    """Word, symbol and colour of the lamp."""
 
     word: str
     symbol: str
     tone: Tone
-    strength: float
+    strength: float = 1.0
+    """1: fresh, 0: faded."""
     detail: str = ""
+    """Text below the word; the window translates it."""
     more: str = ""
+    """Text after `detail` that is not translated."""
+
+
+OFFLINE = Lamp(word="OFFLINE", symbol="○", tone=Tone.QUIET, detail="no connection to the engine")
+"""The lamp while nothing is heard of the engine."""
 
 
 def lamp(status: StatusEvent | None, part: PartEvent | None, now_s: float) -> Lamp:
-    """State of the lamp from what was last heard and when it was sent; `now_s`: monotonic time.
+    """Return the state of the lamp from the newest status and part; `now_s` is monotonic time.
 
-    Green stands for a fresh OK that the PLC reads and takes: of this run of the engine, while nothing keeps the station off the line.
+    Green means a fresh OK of this run of the engine that the PLC reads and accepts, while nothing keeps the
+    station offline.
     """
     if status is None or now_s - status.at_s > STATUS_LOST_S:
-        return Lamp("OFFLINE", "○", Tone.QUIET, 1.0, "no word from the engine")
+        return OFFLINE
     if status.service:
-        return Lamp("SERVICE", "⚙", Tone.TEST, 1.0, "works on the station", status.service)
+        return Lamp(word="SERVICE", symbol="⚙", tone=Tone.TEST, detail=IN_SERVICE, more=status.service)
     age_s = 1e9 if part is None or part.at_s < status.started_s else now_s - part.at_s
     offline = status.line.offline
     blocked = offline is not Offline.NONE
     if part is not None and age_s <= GONE_S and not (part.told is VerdictCode.OK and blocked):
         return _of_part(part, Alarm.MASTERS_DUE in status.alarms, _fade(age_s))
     if offline is Offline.PLC_SILENT:
-        return Lamp("PLC LOST", "⚠", Tone.WARN, 1.0, "the PLC's heartbeat stands still")
+        cause = TEXTS[Alarm.PLC_SILENT].cause
+        return Lamp(word="PLC LOST", symbol="⚠", tone=Tone.WARN, detail=cause)
     if offline is Offline.CAMERA_LOST:
-        return Lamp("OFFLINE", "○", Tone.WARN, 1.0, "camera lost", status.camera_message)
+        cause = TEXTS[Alarm.CAMERA_LOST].cause
+        return Lamp(word="OFFLINE", symbol="○", tone=Tone.WARN, detail=cause, more=status.camera_message)
     if offline is not Offline.NONE:
-        return Lamp("OFFLINE", "○", Tone.QUIET, 1.0, WHY_OFFLINE[offline])
-    return Lamp("NO VERDICT", "–", Tone.QUIET, 1.0, "waiting for a part")
+        return Lamp(word="OFFLINE", symbol="○", tone=Tone.QUIET, detail=WHY_OFFLINE[offline])
+    return Lamp(word="NO VERDICT", symbol="–", tone=Tone.QUIET, detail="waiting for a part")
 
 
 def _of_part(part: PartEvent, masters_due: bool, strength: float) -> Lamp:
-    record = part.record
-    reason, found = (
-        "" if record.inspection.reason is None else str(record.inspection.reason),
-        str(record.verdict),
-    )
+    """Return the lamp for a part that is not too old."""
+    record, verdict = part.record, str(part.record.verdict)
+    reason = str(record.inspection.reason or "")
+    if record.purpose is Purpose.GOLDEN:
+        return _test(strength, detail="master", more=verdict)
     if record.purpose is not Purpose.PART:
-        return Lamp(
-            "TEST",
-            "T",
-            Tone.TEST,
-            strength,
-            "master" if record.purpose is Purpose.GOLDEN else "test picture",
-            found,
-        )
+        return _test(strength, detail="test image", more=verdict)
+    if part.told is VerdictCode.ERROR and record.verdict is not Verdict.ERROR:
+        reason = LATE
     if part.told is VerdictCode.ERROR:
-        late = record.verdict is not Verdict.ERROR
-        return Lamp("ERROR", "!", Tone.WARN, strength, "result came too late for the PLC" if late else reason)
+        return Lamp(word="ERROR", symbol="!", tone=Tone.WARN, strength=strength, detail=reason)
+    if part.told is VerdictCode.TEST and record.origin is Origin.REPLAY:
+        return _test(strength, detail="replay", more=verdict)
     if part.told is VerdictCode.TEST:
-        why = "replay" if record.origin is Origin.REPLAY else "not to be trusted: see Alarms"
-        return Lamp("TEST", "T", Tone.TEST, strength, why, found)
+        return _test(strength, detail="verdict cannot be trusted: see page Alarms", more=verdict)
     if part.told is VerdictCode.OK and masters_due:
-        return Lamp("TEST", "T", Tone.TEST, strength, "masters are due: the PLC releases nothing", found)
+        return _test(strength, detail="master check is due: the PLC releases no parts", more=verdict)
     if part.told is VerdictCode.OK:
-        return Lamp("OK", "✓", Tone.GOOD, strength, "21 of 21 segments")
-    return Lamp("NOK", "✗", Tone.BAD, strength, reason)
+        return Lamp(word="OK", symbol="✓", tone=Tone.GOOD, strength=strength, detail="21 of 21 segments")
+    return Lamp(word="NOK", symbol="✗", tone=Tone.BAD, strength=strength, detail=reason)
+
+
+def _test(strength: float, *, detail: str, more: str) -> Lamp:
+    return Lamp(word="TEST", symbol="T", tone=Tone.TEST, strength=strength, detail=detail, more=more)
 
 
 def _fade(age_s: float) -> float:
@@ -104,12 +119,10 @@ def _fade(age_s: float) -> float:
 
 
 def foot(part: PartEvent | None, now_s: float) -> str:
-    """Return what stands below the lamp: which part it is of, and how old that is; `now_s`: monotonic time."""
-    return (
-        ""
-        if part is None
-        else f"{part.record.serial or part.record.inspection_id} · {_ago(now_s - part.at_s)}"
-    )
+    """Return the line below the lamp: serial or number of the part, and its age; `now_s` is monotonic time."""
+    if part is None:
+        return ""
+    return f"{part.record.serial or part.record.inspection_id} · {_ago(now_s - part.at_s)}"
 
 
 def _ago(age_s: float) -> str:
