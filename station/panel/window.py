@@ -48,7 +48,7 @@ class Window(QMainWindow):
         self._build(PAGES[0].key)
         session.received.status_changed.connect(self._on_status)
         session.account.changed.connect(self._on_user)
-        session.part_wanted.connect(self._open_part)
+        session.part_chosen.connect(self._open_part)
         self._ageing = QTimer(self)
         self._ageing.timeout.connect(self._on_status)
         self._ageing.start(AGE_MS)

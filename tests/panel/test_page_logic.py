@@ -19,7 +19,7 @@ from station.panel.pages.setup.masters_table import MasterState, master_rows
 from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState
 from station.panel.session.lamp import foot
 from station.panel.session.login_state import LoginState
-from station.panel.session.pending import NO_CONNECTION, PATIENCE_S, Pending
+from station.panel.session.pending import NO_ANSWER_S, NO_CONNECTION, SILENCE_S, Pending
 from tests.conftest import ROOT
 from tests.panel.made import part
 from tests.parts import ok_inspection
@@ -73,24 +73,24 @@ def test_what_pages_decide_needs_no_qt() -> None:
 def test_a_login_may_what_its_level_may_until_the_engine_says_otherwise(level: Level, asked: Level) -> None:
     state = LoginState()
     assert not state.may(Level.OPERATOR)
-    assert not state.begun(Answer(1, "unknown name or wrong PIN"))
-    assert state.begun(Answer(2, logged_in=True, token="t", name="Ada", level=level))
+    assert not state.begin(Answer(1, "unknown name or wrong PIN"))
+    assert state.begin(Answer(2, logged_in=True, token="t", name="Ada", level=level))
     assert state.may(asked) is (level >= asked)
-    assert not state.over_by("t", Answer(3, logged_in=True))
-    assert not state.over_by("t", Answer(3, NO_CONNECTION)), "the engine may come back"
-    assert not state.over_by("of the login before", Answer(3, "a login is needed"))
-    assert state.over_by("t", Answer(3, "a login is needed"))
-    assert state.ended()
-    assert not state.ended()
+    assert not state.is_ended_by("t", Answer(3, logged_in=True))
+    assert not state.is_ended_by("t", Answer(3, NO_CONNECTION)), "the engine may come back"
+    assert not state.is_ended_by("of the login before", Answer(3, "a login is needed"))
+    assert state.is_ended_by("t", Answer(3, "a login is needed"))
+    assert state.end()
+    assert not state.end()
     assert not state.may(Level.OPERATOR)
-    assert not state.over_by("", Answer(4, "a login is needed")), "there is none that could end"
+    assert not state.is_ended_by("", Answer(4, "a login is needed")), "there is none that could end"
 
 
 def test_a_touch_is_said_once() -> None:
     state = LoginState()
     state.touched()
     assert not state.take_touched(), "nobody is logged in"
-    state.begun(Answer(1, logged_in=True, token="t", name="Ada", level=Level.ADMIN))
+    state.begin(Answer(1, logged_in=True, token="t", name="Ada", level=Level.ADMIN))
     state.touched()
     assert [state.take_touched(), state.take_touched()] == [True, False]
 
@@ -132,7 +132,7 @@ def test_each_request_is_answered_once_by_the_engine_or_given_up(steps: list[str
             assert then is not None
             then(Answer(number, NO_CONNECTION))
             waiting.remove(number)
-    now += PATIENCE_S + 1
+    now += SILENCE_S + 1
     assert pending.lost(now) == waiting
     assert all(count == 1 for count in came.values())
 
@@ -144,7 +144,21 @@ def test_a_change_may_last_as_long_as_the_engine_answers_others() -> None:
         renewal = pending.begin(lambda _: None, float(second))
         pending.answered(Answer(renewal), float(second))
         assert pending.lost(float(second)) == []
-    assert pending.lost(59.0 + PATIENCE_S + 0.1) == [change]
+    assert pending.lost(59.0 + SILENCE_S + 0.1) == [change]
+
+
+@given(st.lists(st.floats(0.0, SILENCE_S), min_size=1, max_size=30), st.floats(0.01, 100.0))
+def test_a_busy_engine_whose_events_come_may_answer_late_but_not_never(
+    gaps: list[float], more_s: float
+) -> None:
+    pending, now_s = Pending(), 0.0
+    number = pending.begin(lambda _: None, now_s)
+    for gap_s in gaps:
+        now_s += gap_s
+        assert pending.lost(now_s) == ([number] if now_s > NO_ANSWER_S else [])
+        pending.heard(now_s)
+    silent_or_mute = more_s > SILENCE_S or now_s + more_s > NO_ANSWER_S
+    assert pending.lost(now_s + more_s) == ([number] if silent_or_mute else [])
 
 
 # what is looked for

@@ -9,7 +9,8 @@ from pytestqt.qtbot import QtBot
 
 from station.archive.writer import Archive
 from station.channel.preview import make_preview
-from station.channel.requests import Changed, HoldService
+from station.channel.requests import Answer, Changed, HoldService, Message
+from station.channel.zeromq import Publisher, RequestServer
 from station.domain import Frame, Image, Origin
 from station.engine import orders
 from station.engine.alarm_log import AlarmLog
@@ -32,6 +33,7 @@ from station.plc.map.registers import Status
 from station.records import Part
 from station.settings import adjustments
 from station.settings.file import load
+from station.settings.model import ChannelSettings
 from tests.desk import PIN, Desk
 from tests.panel.made import log_in, part, status
 from tests.parts import label_with, nok_inspection, ok_inspection
@@ -98,7 +100,7 @@ def test_without_an_engine_nobody_logs_in_and_it_is_said(window: Window, qtbot: 
 def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
     window: Window, desk: Desk, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("station.panel.session.pending.PATIENCE_S", 0.5)
+    monkeypatch.setattr("station.panel.session.pending.SILENCE_S", 0.5)
     log_in(window.session, desk, qtbot, "Ada", Level.SETTER)
     window.go(PageKey.STATISTICS)
     page = window.page
@@ -113,6 +115,42 @@ def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
     qtbot.waitUntil(lambda: page._problem.text() == NO_CONNECTION, timeout=5000)
     assert page.zero.isEnabled()
     assert window.session.account.user is not None, "the engine may come back"
+
+
+def test_a_busy_engine_may_answer_late_and_a_silent_one_is_given_up(
+    window: Window,
+    publisher: Publisher,
+    settings: ChannelSettings,
+    qtbot: QtBot,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Five wrong PINs under load: an engine of which events were heard was said to be gone."""
+    monkeypatch.setattr("station.panel.session.pending.SILENCE_S", 0.5)
+    server, answers, asked = RequestServer(settings), list[Answer](), list[tuple[bytes, Message]]()
+
+    def log_in_is_received() -> bool:
+        if answers:  # not connected yet
+            answers.clear()
+            window.session.account.log_in("Ada", PIN, answers.append)
+        publisher.send(status())
+        asked.extend(server.received(0.0))
+        return bool(asked)
+
+    try:
+        window.session.account.log_in("Ada", PIN, answers.append)
+        qtbot.waitUntil(log_in_is_received, timeout=10_000)
+        end_s = time.monotonic() + 1.5
+        while time.monotonic() < end_s:
+            publisher.send(status())
+            qtbot.wait(50)
+        assert answers == [], "events come, so the engine is there"
+        sender, message = asked[-1]
+        server.answer(sender, Answer(message.request_id, "unknown name or wrong PIN"))
+        qtbot.waitUntil(lambda: [a.refusal for a in answers] == ["unknown name or wrong PIN"], timeout=5000)
+        window.session.account.log_in("Ada", PIN, answers.append)
+        qtbot.waitUntil(lambda: [a.refusal for a in answers[1:]] == [NO_CONNECTION], timeout=5000)
+    finally:
+        server.close()
 
 
 def test_the_bit_set_by_hand_stays_in_sight_in_another_language(
@@ -131,9 +169,9 @@ def test_the_line_page_of_an_absent_engine_claims_nothing(window: Window) -> Non
     window.go(PageKey.LINE)
     page = window.page
     assert isinstance(page, LinePage)
-    window.session.received._on_status(status())
+    window.session.bridge.status.emit(status())
     assert page._lamps["STATUS", Status.READY].text() == "● READY"
-    window.session.received._on_status(status(at_s=time.monotonic() - 10))
+    window.session.bridge.status.emit(status(at_s=time.monotonic() - 10))
     assert page._lamps["STATUS", Status.READY].text() == "? READY"
     assert page._stale.isVisible()
 
@@ -274,8 +312,8 @@ def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(
     window: Window, frames: dict[str, Image]
 ) -> None:
     session = window.session
-    session.received._on_parts([part(nok_inspection(), 0)])
-    session.received._on_preview(make_preview(0, frames[label_with("OK")["frame"]], None))
+    session.bridge.parts.emit([part(nok_inspection(), 0)])
+    session.bridge.preview.emit(make_preview(0, frames[label_with("OK")["frame"]], None))
     assert session.received.last_nok is not None
     assert session.received.last_nok.preview is None
     assert not session.received.thumbs

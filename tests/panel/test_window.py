@@ -78,10 +78,10 @@ def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(
 ) -> None:
     session = window.session
     item = label_with("OK")
-    session.received._on_parts([part(ok_inspection(), 1)])
-    session.received._on_preview(make_preview(1, frames[item["frame"]], None))
+    session.bridge.parts.emit([part(ok_inspection(), 1)])
+    session.bridge.preview.emit(make_preview(1, frames[item["frame"]], None))
     assert live(window).weld._note == ""
-    session.received._on_parts([part(ok_inspection(), 2)])
+    session.bridge.parts.emit([part(ok_inspection(), 2)])
     assert "no picture of this part" in live(window).weld._note
 
 
@@ -104,10 +104,10 @@ def test_the_button_asks_the_engine_for_a_test_picture(
 
 def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> None:
     session = window.session
-    session.received._on_status(status())
-    session.received._on_parts([part(ok_inspection())])
+    session.bridge.status.emit(status())
+    session.bridge.parts.emit([part(ok_inspection())])
     assert live(window).lamp.lamp.word == "OK"
-    session.received._on_status(status(at_s=time.monotonic() - 10))
+    session.bridge.status.emit(status(at_s=time.monotonic() - 10))
     live(window).age()
     assert live(window).lamp.lamp.word == "OFFLINE"
     assert "no connection to the engine" in window._alarm.text()
@@ -125,13 +125,13 @@ def test_a_restarted_engine_needs_no_new_panel(
 
         qtbot.waitUntil(told, timeout=5000)
         end.close()
-        window.session.received._on_status(status(at_s=time.monotonic() - 10))
+        window.session.bridge.status.emit(status(at_s=time.monotonic() - 10))
         assert live(window).lamp.lamp.word == "OFFLINE"
 
 
 def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Window, qtbot: QtBot) -> None:
-    window.session.received._on_status(status(counts=Counts(7, 2, 1)))
-    window.session.received._on_parts([part(nok_inspection(), 5)])
+    window.session.bridge.status.emit(status(counts=Counts(7, 2, 1)))
+    window.session.bridge.parts.emit([part(nok_inspection(), 5)])
     window.go(PageKey.STATISTICS)
     window.speak("de")
     titles = [button.text() for button in window._buttons.values()]
@@ -141,7 +141,7 @@ def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Wind
     assert live(window).facts.values["parts"].text() == "10"
     assert live(window).facts.values["part"].text() == "5"
     assert theme.colors() is theme.LIGHT
-    window.session.received._on_status(status())
+    window.session.bridge.status.emit(status())
     assert live(window).lamp.lamp.word == "NOK"
 
 
@@ -183,7 +183,7 @@ def test_each_page_has_one_line_in_the_table_and_its_button_leads_to_it(window: 
     assert window.shown is PageKey.SETUP
     window._alarm.click()
     assert window.shown is PageKey.ALARMS
-    window.session.part_wanted.emit(1)
+    window.session.part_chosen.emit(1)
     assert window.shown is PageKey.HISTORY
 
 
@@ -205,7 +205,7 @@ def test_keys_on_the_screen_write_where_the_cursor_stands(window: Window, qtbot:
 
 
 def test_a_lost_plc_is_told(window: Window) -> None:
-    window.session.received._on_status(status(Offline.PLC_SILENT))
+    window.session.bridge.status.emit(status(Offline.PLC_SILENT))
     assert live(window).lamp.lamp.word == "PLC LOST"
 
 

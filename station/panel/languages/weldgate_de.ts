@@ -662,6 +662,10 @@
         <translation>auf Anforderung eines Fensters wird ein Bild aufgenommen oder werden Einstellungen geladen</translation>
     </message>
     <message>
+        <source>No connection to the engine.</source>
+        <translation>Keine Verbindung zum Prüfprogramm.</translation>
+    </message>
+    <message>
         <source>no weld was found in it</source>
         <translation>es wurde keine Naht darin gefunden</translation>
     </message>

@@ -1,4 +1,4 @@
-"""The login of this window: the engine hands it out, checks it with each request, and ends it."""
+"""The login of this window: the engine grants it, checks it with each request, and ends it."""
 
 from functools import partial
 
@@ -12,12 +12,14 @@ from station.panel.session.pending import Then
 from station.panel.session.received import Received
 
 RENEW_MS = 1000
+"""Interval at which the login is renewed."""
 
 
 class Account(QObject):
-    """Who is logged in; asks the engine in their name."""
+    """Knows who is logged in and sends requests to the engine in their name."""
 
     changed = Signal()
+    """Emitted when somebody has logged in or out."""
 
     def __init__(self, requests: EngineRequests, received: Received) -> None:
         super().__init__()
@@ -30,24 +32,23 @@ class Account(QObject):
 
     @property
     def user(self) -> User | None:
-        """Who is logged in, or None."""
+        """User who is logged in, or None."""
         return self._state.user
 
     def may(self, level: Level) -> bool:
-        """Return whether who is logged in may do what this level may; the engine checks it again."""
+        """Return whether somebody with this level or a higher one is logged in; the engine checks it again."""
         return self._state.may(level)
 
     def ask(self, request: Request, then: Then, owner: QObject | None = None) -> None:
-        """Ask the engine in the name of who is logged in; `then` is called once with the answer."""
+        """Send a request in the name of the user who is logged in; `then` is called once with the answer."""
         self._requests.ask(request, self._state.token, then, owner)
 
     def log_in(self, name: str, pin: str, then: Then, owner: QObject | None = None) -> None:
-        """Ask for a login, which lasts until logout, another login, or until nothing is touched for a while."""
-
+        """Ask for a login. It lasts until logout, another login, or until the window is not used for a while."""
         reply = guarded(then, owner)
 
         def answered(answer: Answer) -> None:
-            if self._state.begun(answer):
+            if self._state.begin(answer):
                 self.touched()
                 self._renew.start(RENEW_MS)
                 self.changed.emit()
@@ -67,22 +68,22 @@ class Account(QObject):
     def _end(self) -> None:
         self._renew.stop()
         self._idle.stop()
-        if self._state.ended():
+        if self._state.end():
             self.changed.emit()
 
     def touched(self) -> None:
-        """Note that somebody is there."""
+        """Note that the window is being used, which keeps the user logged in."""
         if self.user is not None:
             self._state.touched()
             self._idle.start(int(self._received.settings.panel.logout_min * 60_000))
 
     def renew(self) -> None:
-        """Tell the engine that this window is alive; the engine says whether the login is."""
+        """Renew the login; the answer says whether the engine has ended it."""
         token = self._state.token
         self.ask(StayLoggedIn(self._state.take_touched()), partial(self._on_renewed, token))
 
     def _on_renewed(self, token: str, answer: Answer) -> None:
-        if self._state.over_by(token, answer):
+        if self._state.is_ended_by(token, answer):
             self._end()
 
     def close(self) -> None:
@@ -93,4 +94,4 @@ class Account(QObject):
 
 
 def _nothing(_answer: Answer) -> None:
-    """Nobody waits for this answer."""
+    """Ignore an answer that nobody waits for."""

@@ -1,4 +1,4 @@
-"""From the engine's channel to Qt signals: the only crossing. Polls on the window's own thread, never waits."""
+"""Turns what comes over the engine's channel into Qt signals; polls on the window's own thread and never waits."""
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
@@ -10,27 +10,28 @@ POLL_MS = 30
 
 
 class Bridge(QObject):
-    """Emits what the engine says."""
+    """Emits the events and answers of the engine, and sends requests to it."""
 
     status = Signal(object)
-    """StatusEvent"""
+    """Carries a StatusEvent."""
     parts = Signal(object)
-    """PartEvents that came at once, the newest last."""
-    look = Signal(object)
-    """LookEvent"""
+    """Carries the PartEvents that came at once, the newest last."""
+    setup_image = Signal(object)
+    """Carries the numbers of a setup image."""
     preview = Signal(object)
-    """Preview"""
+    """Carries a Preview."""
     answer = Signal(object)
-    """Answer to one request"""
+    """Carries the Answer to one request."""
 
     def __init__(self, subscriber: Subscriber, client: RequestClient) -> None:
         super().__init__()
         self._subscriber, self._client = subscriber, client
         self._timer = QTimer(self)
-        self._timer.timeout.connect(self._poll)
+        self._timer.timeout.connect(self.poll)
         self._timer.start(POLL_MS)
 
-    def _poll(self) -> None:
+    def poll(self) -> None:
+        """Emit what has come; called regularly."""
         parts: list[PartEvent] = []
         for event in self._subscriber.events():
             if isinstance(event, StatusEvent):
@@ -38,7 +39,7 @@ class Bridge(QObject):
             elif isinstance(event, PartEvent):
                 parts.append(event)
             else:
-                self.look.emit(event)
+                self.setup_image.emit(event)
         if parts:
             self.parts.emit(parts)
         for answer in self._client.answers():
@@ -52,7 +53,7 @@ class Bridge(QObject):
         return self._client.send(message)
 
     def close(self) -> None:
-        """Stop listening."""
+        """Stop polling and close the channel."""
         self._timer.stop()
         self._subscriber.close()
         self._client.close()

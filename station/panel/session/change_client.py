@@ -1,4 +1,4 @@
-"""Asks the engine to change settings: it alone checks, notes, writes and uses them."""
+"""Asks the engine to change settings; the engine checks, records, writes and uses them."""
 
 from collections.abc import Sequence
 
@@ -9,13 +9,14 @@ from station.panel.session.account import Account
 
 
 class ChangeClient(QObject):
-    """One change after the other; pages show that it is waited for."""
+    """Makes one change at a time; pages show while it is waited for."""
 
     asked = Signal()
+    """Emitted when a change was sent to the engine."""
     used = Signal()
-    """The station goes by the changed settings."""
+    """Emitted when the changed settings are in use."""
     refused = Signal(str)
-    """Nothing was changed, and why."""
+    """Carries why nothing was changed."""
 
     def __init__(self, account: Account) -> None:
         super().__init__()
@@ -23,11 +24,11 @@ class ChangeClient(QObject):
 
     @property
     def waiting(self) -> bool:
-        """True while the engine has not answered."""
+        """True while the engine has not answered to a change."""
         return self._waiting
 
     def make(self, values: Sequence[Changed], reason: str) -> None:
-        """Ask for a change; `used` or `refused` follows. Does nothing while another one is waited for."""
+        """Ask for a change; `used` or `refused` follows. Do nothing while another change is waited for."""
         if self._waiting:
             return
         self._waiting = True

@@ -1,4 +1,4 @@
-"""Asks the engine, and calls back with the one answer; the window never waits."""
+"""Sends requests to the engine and calls back with the answer; the window never waits."""
 
 import time
 
@@ -9,7 +9,8 @@ from station.channel.requests import Answer, Message, Request
 from station.panel.session.bridge import Bridge
 from station.panel.session.pending import NO_CONNECTION, Pending, Then
 
-LOOK_MS = 250
+CHECK_MS = 250
+"""Interval at which requests are given up whose engine is gone."""
 
 
 class EngineRequests(QObject):
@@ -19,12 +20,17 @@ class EngineRequests(QObject):
         super().__init__()
         self._bridge, self._pending = bridge, Pending()
         bridge.answer.connect(self._on_answer)
+        for event in (bridge.status, bridge.parts, bridge.setup_image):
+            event.connect(self._on_event)
         self._timer = QTimer(self)
-        self._timer.timeout.connect(self._look)
-        self._timer.start(LOOK_MS)
+        self._timer.timeout.connect(self._give_up_lost)
+        self._timer.start(CHECK_MS)
 
     def ask(self, request: Request, token: str, then: Then, owner: QObject | None = None) -> None:
-        """Ask by a login's token; `then` is called once, unless its `owner` was deleted meanwhile."""
+        """Send a request with the token of a login.
+
+        `then` is called once with the answer, unless its `owner` was deleted meanwhile.
+        """
         now_s = time.monotonic()
         number = self._pending.begin(guarded(then, owner), now_s)
         if not self._bridge.send(Message(number, now_s, request, token)):
@@ -35,7 +41,11 @@ class EngineRequests(QObject):
         if then is not None:
             then(answer)
 
-    def _look(self) -> None:
+    def _on_event(self, _event: object) -> None:
+        self._pending.heard(time.monotonic())
+
+    def _give_up_lost(self) -> None:
+        self._bridge.poll()  # a window that was busy itself has not yet read what came meanwhile
         for number in self._pending.lost(time.monotonic()):
             self._give_up(number)
 
@@ -45,15 +55,15 @@ class EngineRequests(QObject):
             then(Answer(number, NO_CONNECTION))
 
     def close(self) -> None:
-        """Stop waiting."""
+        """Stop waiting for answers."""
         self._timer.stop()
 
 
 def guarded(then: Then, owner: QObject | None) -> Then:
-    """Return what calls `then` unless its owner was deleted meanwhile: pages are made again at times."""
+    """Return a function that calls `then` unless its owner was deleted meanwhile, as pages are at times."""
 
-    def alive(answer: Answer) -> None:
+    def call(answer: Answer) -> None:
         if owner is None or shiboken6.isValid(owner):
             then(answer)
 
-    return alive
+    return call

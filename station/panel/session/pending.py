@@ -5,11 +5,16 @@ from dataclasses import dataclass
 
 from station.channel.requests import Answer
 
-NO_CONNECTION = "no connection to the engine"
-PATIENCE_S = 5.0
-"""An engine that answers nothing for so long is gone; one answer may last while others come."""
+NO_CONNECTION = "No connection to the engine."
+"""Answer to a request that the engine did not answer."""
+SILENCE_S = 5.0
+"""An engine of which nothing at all is heard for so long, neither events nor answers, is gone."""
+NO_ANSWER_S = 60.0
+"""Requests are given up once none was answered for so long, although events come."""
+NEVER_S = -1e9
 
 Then = Callable[[Answer], None]
+"""Function that is called once with the answer to a request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,10 +24,14 @@ class _Waiting:
 
 
 class Pending:
-    """Knows who waits for which answer; times are monotonic."""
+    """Knows who waits for which answer; times are monotonic.
+
+    A busy engine answers late: as long as its events come, requests wait. An answer may take even longer while
+    others come.
+    """
 
     def __init__(self) -> None:
-        self._last, self._heard_s = 0, -1e9
+        self._last, self._heard_s, self._answered_s = 0, NEVER_S, NEVER_S
         self._waiting: dict[int, _Waiting] = {}
 
     def begin(self, then: Then, now_s: float) -> int:
@@ -31,18 +40,26 @@ class Pending:
         self._waiting[self._last] = _Waiting(then, now_s)
         return self._last
 
-    def answered(self, answer: Answer, now_s: float) -> Then | None:
-        """Return who waits for this answer; None: nobody does any more."""
+    def heard(self, now_s: float) -> None:
+        """Note that the engine has sent an event."""
         self._heard_s = now_s
+
+    def answered(self, answer: Answer, now_s: float) -> Then | None:
+        """Return who waits for this answer, or None if nobody does any more."""
+        self._heard_s = self._answered_s = now_s
         waiting = self._waiting.pop(answer.request_id, None)
         return None if waiting is None else waiting.then
 
     def given_up(self, request_id: int) -> Then | None:
-        """Forget a request that could not be sent; return who waits for it."""
+        """Forget a request that will not be answered; return who waits for it."""
         waiting = self._waiting.pop(request_id, None)
         return None if waiting is None else waiting.then
 
     def lost(self, now_s: float) -> list[int]:
-        """Return the numbers of requests that will not be answered: the engine is gone."""
-        late_s = now_s - PATIENCE_S
-        return [n for n, waiting in self._waiting.items() if max(waiting.asked_s, self._heard_s) < late_s]
+        """Return the numbers of the requests that will not be answered: the engine is gone, or answers nothing."""
+        return [number for number, waiting in self._waiting.items() if self._is_lost(waiting, now_s)]
+
+    def _is_lost(self, waiting: _Waiting, now_s: float) -> bool:
+        silent_s = now_s - max(waiting.asked_s, self._heard_s)
+        unanswered_s = now_s - max(waiting.asked_s, self._answered_s)
+        return silent_s > SILENCE_S or unanswered_s > NO_ANSWER_S

@@ -1,4 +1,4 @@
-"""What the window has heard of the engine; read by all pages, written by nobody but the engine's messages."""
+"""Keeps what the window has received from the engine, for all pages to read; only the channel changes it."""
 
 import time
 from collections import deque
@@ -10,7 +10,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QImage
 
-from station.channel.events import SETTING_UP, STATUS_LOST_S, LookEvent, PartEvent, Preview, StatusEvent
+from station.channel.events import SETTING_UP, STATUS_LOST_S, PartEvent, Preview, StatusEvent
 from station.domain import Purpose, Verdict
 from station.errors import WeldgateError
 from station.panel.session.bridge import Bridge
@@ -18,93 +18,94 @@ from station.settings.file import load
 from station.settings.model import Settings
 
 FILM = 300
-"""Parts at hand."""
+"""Number of the newest parts that are kept."""
 THUMB_PX = 96
+"""Longer side of a thumbnail."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pinned:
-    """A part that stays in sight, and its picture once it has come."""
+    """A part that stays on the page, and its image once that has come."""
 
     part: PartEvent
     preview: Preview | None
 
 
 class Received(QObject):
-    """The window's memory; every signal says what is new. Pages may be made again from it at any time."""
+    """The window's memory: pages can be built from it at any time; its signals say what is new."""
 
     status_changed = Signal()
     part_came = Signal()
     preview_came = Signal()
-    look_came = Signal(object)
-    """LookEvent"""
+    setup_image_came = Signal(object)
+    """Carries a LookEvent: the numbers of a setup image."""
     settings_changed = Signal()
-    """Somebody has changed the settings file, or its adjustments."""
+    """Emitted when the settings file or its adjustments were changed."""
 
     def __init__(self, bridge: Bridge, settings: Settings, path: Path) -> None:
-        """`path`: of the settings file."""
+        """`settings` were read from the file `path`."""
         super().__init__()
         self._settings, self._path = settings, path
         self._status: StatusEvent | None = None
         self._parts: deque[PartEvent] = deque(maxlen=FILM)
         self._thumbs: dict[int, QImage] = {}
         self._preview: Preview | None = None
-        self._look_preview: Preview | None = None
+        self._setup_preview: Preview | None = None
         self._last_nok: Pinned | None = None
         bridge.status.connect(self._on_status)
         bridge.parts.connect(self._on_parts)
         bridge.preview.connect(self._on_preview)
-        bridge.look.connect(self._on_look)
+        bridge.setup_image.connect(self.setup_image_came)
 
     @property
     def settings(self) -> Settings:
-        """Settings as the file last said them."""
+        """Settings as they were last read from the file."""
         return self._settings
 
     @property
     def folder(self) -> Path:
-        """The archive."""
+        """Folder of the archive."""
         return self._settings.archive.folder
 
     @property
     def status(self) -> StatusEvent | None:
-        """The engine's newest status, however old it is."""
+        """Newest status of the engine, however old it is."""
         return self._status
 
     @property
     def engine_there(self) -> bool:
-        """True if the engine was heard just now."""
+        """True if the newest status is not too old."""
         return self._status is not None and time.monotonic() - self._status.at_s <= STATUS_LOST_S
 
     @property
     def parts(self) -> Sequence[PartEvent]:
-        """The last parts, the newest last."""
+        """Newest parts, at most `FILM`, the newest last."""
         return self._parts
 
     @property
     def last(self) -> PartEvent | None:
-        """The newest part."""
+        """Newest part."""
         return self._parts[-1] if self._parts else None
 
     @property
     def last_nok(self) -> Pinned | None:
-        """The newest part that was judged NOK."""
+        """Newest part that was judged NOK."""
         return self._last_nok
 
     @property
     def thumbs(self) -> Mapping[int, QImage]:
-        """Small pictures of the last parts, by their numbers."""
+        """Thumbnails of the newest parts by number of the part."""
         return self._thumbs
 
     @property
     def preview(self) -> Preview | None:
-        """Picture of the newest part that had one."""
+        """Image of the newest part that has one."""
         return self._preview
 
     @property
-    def look_preview(self) -> Preview | None:
-        """Picture of the last setup image."""
-        return self._look_preview
+    def setup_preview(self) -> Preview | None:
+        """Newest setup image."""
+        return self._setup_preview
 
     def _on_status(self, event: StatusEvent) -> None:
         before, self._status = self._status, event
@@ -113,11 +114,11 @@ class Received(QObject):
         self.status_changed.emit()
 
     def read_settings(self) -> None:
-        """Read the settings file again: it was changed at this window or another one."""
-        with suppress(WeldgateError):  # the engine has said what is wrong with them
-            found = load(self._path)
-            if found != self._settings:
-                self._settings = found
+        """Read the settings file again, after it was changed at this window or another one."""
+        with suppress(WeldgateError):  # the engine reports what is wrong with them
+            settings = load(self._path)
+            if settings != self._settings:
+                self._settings = settings
                 self.settings_changed.emit()
 
     def _on_parts(self, events: Sequence[PartEvent]) -> None:
@@ -131,7 +132,7 @@ class Received(QObject):
 
     def _on_preview(self, preview: Preview) -> None:
         if preview.inspection_id == SETTING_UP:
-            self._look_preview = preview
+            self._setup_preview = preview
             self.preview_came.emit()
             return
         self._preview = preview
@@ -148,10 +149,7 @@ class Received(QObject):
                 )
         self.preview_came.emit()
 
-    def _on_look(self, event: LookEvent) -> None:
-        self.look_came.emit(event)
-
 
 def shows(preview: Preview | None, part: PartEvent) -> bool:
-    """Whether a picture is of that part; parts that could not be recorded have no number of their own."""
+    """Return whether an image is of that part; parts that could not be recorded have no number of their own."""
     return preview is not None and preview.inspection_id == part.record.inspection_id > 0

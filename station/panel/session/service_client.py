@@ -1,4 +1,4 @@
-"""Service mode as this window asks for it: a lease that is renewed until somebody ends it or leaves."""
+"""Service mode as this window asks for it: a lease that is renewed until the user ends it or logs out."""
 
 from functools import partial
 
@@ -9,44 +9,46 @@ from station.panel.session.account import Account
 from station.panel.session.pending import NO_CONNECTION
 
 RENEW_MS = 1000
+"""Interval at which service mode is renewed."""
 
 
 class ServiceClient(QObject):
-    """Renews what the engine has granted."""
+    """Asks for service mode and renews it while it is granted."""
 
     changed = Signal()
+    """Emitted when service mode was granted or has ended."""
     refused = Signal(str)
-    """The engine does not grant it, and why."""
+    """Carries why the engine does not grant service mode, or has ended it."""
 
     def __init__(self, account: Account) -> None:
         super().__init__()
         self._account = account
         self._held: HoldService | None = None
         self._renew = QTimer(self)
-        self._renew.timeout.connect(self._say)
+        self._renew.timeout.connect(self._renew_now)
         account.changed.connect(self._drop)
 
     @property
     def held(self) -> HoldService | None:
-        """What the engine has granted to this window, or None."""
+        """Request that the engine has granted to this window, or None."""
         return self._held
 
     def hold(self, request: HoldService) -> None:
-        """Ask for service mode, or in it for other images or another bit; `changed` or `refused` follows."""
+        """Ask for service mode, or for other setup images or another bit in it; `changed` or `refused` follows."""
         self._account.ask(request, partial(self._on_answer, request))
 
     def adjust(self, exposure_us: float, gain_db: float) -> None:
-        """Take setup images otherwise from the next renewal on."""
+        """Take setup images with this exposure and gain from the next renewal on."""
         if self._held is not None and self._held.look:
             self._held = HoldService(look=True, exposure_us=exposure_us, gain_db=gain_db)
 
     def end(self) -> None:
-        """End service mode: the station continues."""
+        """End service mode, so that the station continues."""
         if self._held is not None:
             self._account.ask(EndService(), lambda _: None)
             self._drop()
 
-    def _say(self) -> None:
+    def _renew_now(self) -> None:
         if self._held is not None:
             self._account.ask(self._held, self._on_renewed)
 
@@ -64,12 +66,12 @@ class ServiceClient(QObject):
             self.refused.emit(answer.refusal)
 
     def _drop(self) -> None:
-        """The engine has ended it, or ends it with the login."""
+        """Forget the lease: the engine has ended it, or ends it with the login."""
         self._renew.stop()
         if self._held is not None:
             self._held = None
             self.changed.emit()
 
     def close(self) -> None:
-        """Stop renewing."""
+        """Stop renewing service mode."""
         self._renew.stop()

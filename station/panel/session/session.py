@@ -1,4 +1,4 @@
-"""What a page needs of the window: what was received, who is logged in, service mode, changes of settings."""
+"""What pages share: what was received, the login, service mode, changes of settings."""
 
 from pathlib import Path
 
@@ -14,15 +14,15 @@ from station.settings.model import Settings
 
 
 class Session(QObject):
-    """Holds the four together; each keeps its own state."""
+    """Holds the connection to the engine and the four objects that pages use; each keeps its own state."""
 
-    part_wanted = Signal(int)
-    """Somebody wants to look at this part of the history."""
+    part_chosen = Signal(int)
+    """Carries the number of a part that is to be shown on the page History."""
 
     def __init__(self, bridge: Bridge, settings: Settings, path: Path) -> None:
-        """`path`: of the settings file."""
+        """`settings` were read from the file `path`."""
         super().__init__()
-        self._bridge, self._requests = bridge, EngineRequests(bridge)
+        self.bridge, self._requests = bridge, EngineRequests(bridge)
         self.received = Received(bridge, settings, path)
         self.account = Account(self._requests, self.received)
         self.service = ServiceClient(self.account)
@@ -30,8 +30,8 @@ class Session(QObject):
         self.change.used.connect(self.received.read_settings)
 
     def close(self) -> None:
-        """Log out, stop the timers and the channel."""
+        """Log out, stop the timers and close the channel."""
         self.service.close()
         self.account.close()
         self._requests.close()
-        self._bridge.close()
+        self.bridge.close()

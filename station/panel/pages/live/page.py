@@ -262,7 +262,7 @@ class LivePage(Page):
 
     def _open_pinned(self) -> None:
         if self._nok_shown is not None and self._nok_shown[0] > 0:
-            self._session.part_wanted.emit(self._nok_shown[0])
+            self._session.part_chosen.emit(self._nok_shown[0])
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         """The lamp grows with the screen: it is read from afar."""

@@ -72,7 +72,7 @@ class CameraPage(Page):
             field.changed.connect(self._look)
         self.reason.textChanged.connect(self._look)
         self.save.clicked.connect(self._save)
-        session.received.look_came.connect(self._on_look)
+        session.received.setup_image_came.connect(self._on_look)
         session.received.preview_came.connect(self._on_preview)
         session.account.changed.connect(self._on_user)
         session.received.settings_changed.connect(self._fill)
@@ -163,7 +163,7 @@ class CameraPage(Page):
             self.problem.setText("")
 
     def _on_preview(self) -> None:
-        preview = self._session.received.look_preview
+        preview = self._session.received.setup_preview
         if preview is not None and self._session.service.held is not None:
             plain = drawn(preview, None)
             self.weld.show_weld(Drawn(plain.image, plain.scale, plain.origin_px, self._ring, (), ()))
