@@ -175,7 +175,7 @@ def _show(window: Window, view: str, page: PageKey, tab: int) -> None:
         recipe.fields["limits.hole.min_mm"].set(1.5)
         recipe.segments.set({2: 0.02})
         recipe.ask.click()
-        _wait(lambda: bool(recipe.said.text()))
+        _wait(lambda: bool(recipe.message.text()))
     _pause(0.6)
     if view == "setup-camera":
         session.service.end()

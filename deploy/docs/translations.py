@@ -1,4 +1,4 @@
-"""Brings the German of the window up to date: texts of the code into weldgate_de.ts, that into weldgate_de.qm.
+"""Brings weldgate_de.ts, the German of the window, up to date with the code, and makes the .qm file of it.
 
 New texts are listed: translate them in the .ts file (Qt Linguist) and run this again.
 """

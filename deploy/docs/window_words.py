@@ -1,7 +1,7 @@
-"""Collects the words of the station that the window translates as data: kinds of defect, alarms, refusals, notes.
+"""Collects the words of the station that the window translates: kinds of defect, alarms, refusals, notes.
 
-Words that are data (enumerations, tables) are read from the tables. Sentences that are written where they are raised
-or noted are read from the source, as xgettext does: by the names of the functions and parameters that they go to.
+Words in enumerations and tables are read from these. Sentences that are written where they are raised or
+noted are read from the source, as xgettext does: by the names of the functions and parameters they go to.
 """
 
 import ast
@@ -29,7 +29,7 @@ ONE_FOR_EACH_LEVEL: tuple[Request, ...] = (LogOut(), EndService(), ReloadSetting
 SPOKEN: Mapping[str, tuple[str, ...]] = {
     "station.panel.session.lamp": ("word", "detail", "WHY_OFFLINE", "LATE"),
     "station.panel.session.pending": ("NO_CONNECTION",),
-    "station.panel.widgets.weld.kept": ("ImageError",),
+    "station.panel.widgets.weld.recorded": ("ImageError",),
     "station.channel.requests": ("TOO_OLD", "FAULT"),
     "station.engine.logins": ("_why_over",),
     "station.engine.operator_desk": (
@@ -47,8 +47,8 @@ SPOKEN: Mapping[str, tuple[str, ...]] = {
     "station.journal.review_writer": ("LoginError",),
     "station.plc.bus_log": ("note", "why", "_plc_note", "_station_note"),
 }
-"""Names by which a module says what people see: texts given to a function, parameter or variable of this name,
-or returned by a function of this name."""
+"""Names by which a module addresses people: a text given to a function, parameter or variable of this name,
+or returned by a function of this name, is shown in the window."""
 _WORD = re.compile(r"[A-Za-z]{2}")
 
 
@@ -131,8 +131,8 @@ def _texts(node: ast.expr, known: Mapping[str, object]) -> Iterator[str]:
     match node:
         case ast.Constant(value=str(text)):
             yield text
-        case ast.Name(id=name) if isinstance(text := known.get(name), str):
-            yield text
+        case ast.Name(id=name) if isinstance(constant := known.get(name), str):
+            yield constant
         case ast.IfExp(body=body, orelse=orelse):
             yield from _texts(body, known)
             yield from _texts(orelse, known)

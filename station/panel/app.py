@@ -1,4 +1,4 @@
-"""The panel's process."""
+"""The process that shows the window."""
 
 import os
 import signal
@@ -18,7 +18,10 @@ from station.settings.file import load
 
 
 def open_window(path: Path) -> Window:
-    """The window by a settings file, not yet shown; needs an application. Raises SettingsError."""
+    """Return the window for a settings file, not yet shown. A QApplication must exist.
+
+    Raises SettingsError.
+    """
     settings = load(path)
     words.use(settings.panel.language)
     theme.use(settings.panel.theme)
@@ -31,7 +34,9 @@ def run_panel(path: Path) -> int:
     if sys.platform == "linux" and not any(
         os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
     ):
-        raise WeldgateError("no display for the window; set DISPLAY, or run 'weldgate engine' alone")
+        raise WeldgateError(
+            "The window cannot be shown: there is no display. Set DISPLAY, or run 'weldgate engine' alone."
+        )
     app = QApplication.instance() or QApplication(sys.argv[:1])
     window = open_window(path)
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -1,7 +1,7 @@
-"""The operator's window: header, a button for each page, the page.
+"""The operator's window: a header, a button for each page, and the page that is shown.
 
-A page is made when it is first shown, so that the window opens fast. Language and theme are changed by making
-the pages again from the session.
+A page is built when it is first shown, so that the window opens fast. When language or theme change,
+all widgets are built again from the session.
 """
 
 from collections.abc import Callable
@@ -31,11 +31,12 @@ from station.panel.widgets.keys import Keys
 from station.plc.map.alarms import TEXTS
 
 AGE_MS = 500
+"""Interval at which the header is shown again, as the connection may be lost."""
 NAV_PX, HEADER_PX = 170, 56
 
 
 class Window(QMainWindow):
-    """Shows one page at a time; knows all through the session alone."""
+    """Shows one page at a time; everything it shows comes from the session."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -44,7 +45,7 @@ class Window(QMainWindow):
         self.setMinimumSize(1180, 720)
         self.resize(1280, 800)
         self._pages: dict[PageKey, Page] = {}
-        """Pages that were shown."""
+        """Pages that have been built."""
         self._build(PAGES[0].key)
         session.received.status_changed.connect(self._on_status)
         session.account.changed.connect(self._on_user)
@@ -56,21 +57,21 @@ class Window(QMainWindow):
             QShortcut(QKeySequence(f"F{number}"), self, lambda key=info.key: self.go(key))
 
     def _build(self, chosen: PageKey) -> None:
-        """Make all widgets in the language and theme in use, and show a page."""
+        """Build all widgets in the language and theme in use, and show a page."""
         self._stack, nav = QStackedWidget(), QFrame()
         nav.setObjectName("nav")
         nav.setFixedWidth(NAV_PX)
         column = QVBoxLayout(nav)
         column.setContentsMargins(0, 6, 0, 6)
         column.setSpacing(0)
-        self._buttons, self._places = dict[PageKey, QPushButton](), dict[PageKey, QStackedWidget]()
+        self.buttons, self._places = dict[PageKey, QPushButton](), dict[PageKey, QStackedWidget]()
         group = QButtonGroup(nav)
         for number, info in enumerate(PAGES, 1):
             button, place = self._button(info, number), QStackedWidget()
             group.addButton(button)
             column.addWidget(button)
             self._stack.addWidget(place)
-            self._buttons[info.key], self._places[info.key] = button, place
+            self.buttons[info.key], self._places[info.key] = button, place
         column.addStretch(1)
         body = QWidget()
         rows = QVBoxLayout(body)
@@ -103,32 +104,32 @@ class Window(QMainWindow):
         header.setFixedHeight(HEADER_PX)
         row = QHBoxLayout(header)
         row.setContentsMargins(14, 4, 10, 4)
-        self._badge, self._alarm, self._user = label("", "badge"), QPushButton(""), QPushButton("")
-        self._alarm.setObjectName("flat")
-        self._alarm.clicked.connect(lambda: self.go(PageKey.ALARMS))
-        self._user.setObjectName("flat")
-        self._user.clicked.connect(lambda: self.go(PageKey.SETUP))
+        self.badge, self.alarm, self.user = label("", "badge"), QPushButton(""), QPushButton("")
+        self.alarm.setObjectName("flat")
+        self.alarm.clicked.connect(lambda: self.go(PageKey.ALARMS))
+        self.user.setObjectName("flat")
+        self.user.clicked.connect(lambda: self.go(PageKey.SETUP))
         row.addWidget(label("weldgate", "title"))
-        row.addWidget(self._badge)
-        row.addWidget(self._alarm)
+        row.addWidget(self.badge)
+        row.addWidget(self.alarm)
         row.addStretch(1)
-        row.addWidget(self._user)
+        row.addWidget(self.user)
         other = next(name for name in words.LANGUAGES if name != words.language())
         self._language, self._theme = QPushButton(words.LANGUAGES[other]), QPushButton("◐")
         self._language.clicked.connect(lambda: self.speak(other))
-        self._theme.setToolTip(translate("window", "dark or light"))
+        self._theme.setToolTip(translate("window", "Switch between dark and light"))
         self._theme.clicked.connect(lambda: self.dress("light" if theme.name() == "dark" else "dark"))
-        self._typing = QPushButton("⌨")
-        self._typing.setCheckable(True)
-        self._typing.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._typing.setToolTip(translate("window", "keys on the screen"))
-        self._typing.toggled.connect(self._type)
-        for button in (self._typing, self._language, self._theme):
+        self.keyboard = QPushButton("⌨")
+        self.keyboard.setCheckable(True)
+        self.keyboard.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.keyboard.setToolTip(translate("window", "Keyboard on the screen"))
+        self.keyboard.toggled.connect(self._show_keys)
+        for button in (self.keyboard, self._language, self._theme):
             row.addWidget(button)
         return header
 
-    def _type(self, on: bool) -> None:
-        """Show or remove the keys on the screen; they are made on request: most stations have a keyboard."""
+    def _show_keys(self, on: bool) -> None:
+        """Show or remove the keyboard on the screen; most stations have a real one."""
         if on:
             self._foot.addWidget(Keys())
         elif (item := self._foot.takeAt(0)) is not None and (keys := item.widget()) is not None:
@@ -151,18 +152,18 @@ class Window(QMainWindow):
             self._pages[key] = load(self.session)
             self._places[key].addWidget(scrolled(self._pages[key]))
         self._stack.setCurrentWidget(self._places[key])
-        self._buttons[key].setChecked(True)
+        self.buttons[key].setChecked(True)
 
     def _open_part(self, number: int) -> None:
         self.go(PageKey.HISTORY)
         self.page.open_part(number)
 
     def speak(self, language: str) -> None:
-        """Show everything in another language, at once."""
+        """Show everything in another language."""
         self._rebuild(lambda: words.use(language))
 
     def dress(self, name: str) -> None:
-        """Show everything in another theme, at once."""
+        """Show everything in another theme."""
         self._rebuild(lambda: theme.use(name))
 
     def _rebuild(self, change: Callable[[], None]) -> None:
@@ -173,34 +174,34 @@ class Window(QMainWindow):
 
     def _on_status(self) -> None:
         session, status = self.session, self.session.received.status
-        self._badge.setVisible(status is not None and status.origin is not Origin.CAMERA)
+        self.badge.setVisible(status is not None and status.origin is not Origin.CAMERA)
         simulated = status is not None and status.origin is Origin.SIMULATED
-        self._badge.setText(
+        self.badge.setText(
             translate("window", "SIMULATED CAMERA") if simulated else translate("window", "REPLAY")
         )
         active = status.alarms if status is not None and session.received.engine_there else ()
         if not session.received.engine_there:
-            text = translate("window", "no connection to the engine; the window reconnects automatically")
+            text = translate("window", "No connection to the engine. Reconnecting...")
         else:
             text = data(TEXTS[active[0]].cause) if active else ""
         more = f" (+{len(active) - 1})" if len(active) > 1 else ""
-        self._alarm.setText(f"⚠ {text}{more}" if text else "")
-        self._alarm.setVisible(bool(text))
+        self.alarm.setText(f"⚠ {text}{more}" if text else "")
+        self.alarm.setVisible(bool(text))
         count = f" ({len(active)})" if active else ""
         title = next(info.title() for info in PAGES if info.key is PageKey.ALARMS)
-        self._buttons[PageKey.ALARMS].setText(f"{title}{count}")
+        self.buttons[PageKey.ALARMS].setText(f"{title}{count}")
 
     def _on_user(self) -> None:
         user = self.session.account.user
-        self._user.setText(translate("window", "Log in") if user is None else f"{user.name}")
+        self.user.setText(translate("window", "Log in") if user is None else f"{user.name}")
         app = QApplication.instance()
-        if app is not None:  # every event of the application passes a filter: only while it matters
+        if app is not None:  # a filter sees every event: only while it matters
             app.removeEventFilter(self)
             if user is not None:
                 app.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        """Report any touch or key, which keeps a person logged in."""
+        """Note each touch, click and key press, which keep the user logged in."""
         if event.type() in (QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.TouchBegin):
             self.session.account.touched()
         return super().eventFilter(watched, event)
@@ -213,7 +214,7 @@ class Window(QMainWindow):
         self._pages = {}
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
-        """Stop timers, work and channel when the window is closed."""
+        """Stop timers and work and close the channel when the window is closed."""
         app = QApplication.instance()
         if app is not None:
             app.removeEventFilter(self)

@@ -18,7 +18,7 @@ from tests.panel.made import log_in
 def answered(
     window: Window, typed: Path, over: bool | None, meanwhile: Callable[[], None] = lambda: None
 ) -> Path | None:
-    """What comes of a name that is typed; `over`: what is said when asked about a file that exists, None: nothing is asked."""
+    """Type a name and return the result; `over` answers whether to replace a file, None: nothing is asked."""
     asked: list[bool] = []
 
     def answer() -> None:

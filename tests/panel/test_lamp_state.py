@@ -1,4 +1,4 @@
-"""The lamp: each state by word, symbol and colour; a green never grows old, and never says more than the PLC was told."""
+"""The lamp: each state by word, symbol and colour; green fades, and never claims more than the PLC reads."""
 
 from dataclasses import replace
 

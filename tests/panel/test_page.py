@@ -19,10 +19,10 @@ def test_a_page_is_refreshed_at_once_and_then_while_it_is_visible(qtbot: QtBot) 
     qtbot.addWidget(page)
     page.follow(1)
     assert page.count == 1
-    with qtbot.waitSignal(page._timer.timeout, timeout=5000):
+    with qtbot.waitSignal(page.timer.timeout, timeout=5000):
         pass
     assert page.count == 1, "nobody sees it"
     page.show()
     qtbot.waitUntil(lambda: page.count >= 3, timeout=5000)
     page.close_page()
-    assert not page._timer.isActive()
+    assert not page.timer.isActive()

@@ -1,4 +1,4 @@
-"""What pages decide, without a window: login, requests that wait, search, what-if, masters, the lamp's foot."""
+"""What pages decide, without a window: login, waiting requests, search, what-if, masters, the lamp's foot."""
 
 import subprocess
 import sys
@@ -14,7 +14,7 @@ from station.channel.requests import MIN_REASON, Answer
 from station.journal.reviews import Opinion, Review, State
 from station.journal.users import Level, User
 from station.panel.pages.history.search import FOUND, MIN_SCORE, SEARCHED, TO_CONFIRM, Search
-from station.panel.pages.setup.login_view import Said, login_view, said
+from station.panel.pages.setup.login_view import Notice, login_view, notice
 from station.panel.pages.setup.masters_table import MasterState, master_rows
 from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState
 from station.panel.session.lamp import foot
@@ -26,7 +26,9 @@ from tests.parts import ok_inspection
 
 NOW = datetime(2026, 11, 27, 12, tzinfo=UTC)
 PURE = (
+    "station.panel.pages.history.exports",
     "station.panel.pages.history.search",
+    "station.panel.pages.replay.judging",
     "station.panel.session.lamp",
     "station.panel.session.login_state",
     "station.panel.session.pending",
@@ -59,7 +61,10 @@ def row(
 
 
 def test_what_pages_decide_needs_no_qt() -> None:
-    code = f"import sys, importlib\nfor name in {PURE}: importlib.import_module(name)\nassert 'PySide6' not in sys.modules\n"
+    code = (
+        f"import sys, importlib\nfor name in {PURE}: importlib.import_module(name)\n"
+        "assert 'PySide6' not in sys.modules\n"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
     )
@@ -101,9 +106,9 @@ def test_the_login_page_offers_whom_the_station_knows() -> None:
     assert login_view(known, "").chosen == "Ada"
     assert login_view(known, "Bo").chosen == "Bo"
     assert login_view(known, "").names == ("Ada", "Bob")
-    assert said(Answer(1, logged_in=True)) is Said.NOTHING
-    assert said(Answer(1, "Ada is locked for 43 s more after 5 wrong PINs", locked_s=43.0)) is Said.LOCKED
-    assert said(Answer(1, "unknown name or wrong PIN")) is Said.REFUSED
+    assert notice(Answer(1, logged_in=True)) is Notice.NOTHING
+    assert notice(Answer(1, "Ada is locked for 43 s more after 5 wrong PINs", locked_s=43.0)) is Notice.LOCKED
+    assert notice(Answer(1, "unknown name or wrong PIN")) is Notice.REFUSED
 
 
 # each request has one answer
@@ -165,12 +170,12 @@ def test_a_busy_engine_whose_events_come_may_answer_late_but_not_never(
 
 
 def test_a_search_asks_the_archive_for_what_the_fields_say() -> None:
-    anything = Search().wanted(NOW)
+    anything = Search().query(NOW)
     assert (anything.serial, anything.since, anything.until, anything.limit) == (None, None, None, FOUND)
-    wanted = Search(serial=" A* ", hours=8, segment=3, state=str(State.ONE)).wanted(NOW)
+    wanted = Search(serial=" A* ", hours=8, segment=3, state=str(State.ONE)).query(NOW)
     assert (wanted.serial, wanted.since, wanted.min_score) == ("A*", NOW - timedelta(hours=8), MIN_SCORE)
     assert wanted.limit == SEARCHED, "the state of a review is not in the index"
-    between = Search(since=NOW - timedelta(days=2), until=NOW - timedelta(days=1)).wanted(NOW)
+    between = Search(since=NOW - timedelta(days=2), until=NOW - timedelta(days=1)).query(NOW)
     assert (between.since, between.until) == (NOW - timedelta(days=2), NOW - timedelta(days=1))
 
 

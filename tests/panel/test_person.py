@@ -1,4 +1,4 @@
-"""A person at a running station: parts pass, a NOK is found in the history and reviewed, a threshold is changed, somebody logs out."""
+"""A day at a running station: parts pass, a NOK part is found and reviewed, a limit is changed, logout."""
 
 import asyncio
 import os
@@ -130,14 +130,14 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     assert history.record.record is not None
     assert history.record.findings.rowCount() >= 1
     assert history.record.weld.drawn is not None
-    qtbot.mouseClick(history.opinions[Opinion.FALSE_CALL], LEFT)
+    qtbot.mouseClick(history.reviewing.opinions[Opinion.FALSE_CALL], LEFT)
     qtbot.waitUntil(lambda: number in reviews(folder), timeout=5000)
     assert reviews(folder)[number].state is State.ONE
-    assert not history.opinions[Opinion.MISSED].isEnabled(), "a NOK part cannot have been missed"
+    assert not history.reviewing.opinions[Opinion.MISSED].isEnabled(), "a NOK part cannot have been missed"
 
     # change a threshold: what if first, then a reason
     setup = log_in(window, qtbot, "Quentin", "2345")
-    give_second = history.opinions[Opinion.FALSE_CALL]
+    give_second = history.reviewing.opinions[Opinion.FALSE_CALL]
     give_second.click()
     qtbot.waitUntil(lambda: reviews(folder)[number].agreed is Opinion.FALSE_CALL, timeout=5000)
     setup.show_tab(setup.recipe)
@@ -148,20 +148,20 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     recipe.fields["limits.hole.min_mm"].edit.setText("1.5")
     assert not recipe.save.isEnabled(), "nobody asked what if"
     qtbot.mouseClick(recipe.ask, LEFT)
-    qtbot.waitUntil(lambda: bool(recipe.said.text()), timeout=10_000)
+    qtbot.waitUntil(lambda: bool(recipe.message.text()), timeout=10_000)
     released = [int(row[0]) for row in recipe.released.texts()]
-    assert recipe.refused.rowCount() == 0
+    assert recipe.rejected.rowCount() == 0
     assert released
     assert set(released) < {a.inspection_id for a in nok}, "holes are tolerated, missing welds are not"
     assert not recipe.save.isEnabled(), "a reason is needed"
-    qtbot.keyClicks(recipe.reason, "trial of the least length")
+    qtbot.keyClicks(recipe.reason, "trial of the minimum length")
     crc = session.received.status.config_crc if session.received.status else 0
     qtbot.mouseClick(recipe.save, LEFT)
     qtbot.waitUntil(
         lambda: session.received.status is not None and session.received.status.config_crc != crc,
         timeout=20_000,
     )
-    qtbot.waitUntil(lambda: recipe.said.text() == "saved and in use", timeout=5000)
+    qtbot.waitUntil(lambda: recipe.message.text() == "Saved and in use.", timeout=5000)
     assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"min_mm": 1.5}}}}}}
     (change,) = entries(folder, (Kind.SETTING,))
     assert (change.who, change.subject, change.after) == (
@@ -169,7 +169,7 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
         "recipes.1.model.limits.hole.min_mm",
         "1.5",
     )
-    assert change.reason == "trial of the least length"
+    assert change.reason == "trial of the minimum length"
     again = line.passes(qtbot, 4)
     assert sum(a.verdict is VerdictCode.OK for a in again) == len(ok) + len(released), "as what if had said"
 
@@ -197,7 +197,7 @@ def test_limits_that_the_station_refuses_are_taken_back(
     qtbot.mouseClick(recipe.ask, LEFT)
     qtbot.waitUntil(recipe.save.isEnabled, timeout=10_000)
     qtbot.mouseClick(recipe.save, LEFT)
-    qtbot.waitUntil(lambda: "nothing was changed" in recipe.problem.text(), timeout=20_000)
+    qtbot.waitUntil(lambda: "Nothing was changed" in recipe.problem.text(), timeout=20_000)
     assert adjustments.read(path) == {}
     told = entries(window.session.received.folder, (Kind.SETTING,))
     assert [(e.before, e.after) for e in told] == [("5", "0.01"), ("0.01", "5")]
@@ -220,11 +220,11 @@ def test_a_record_whose_picture_is_gone_is_shown_as_such(
     assert isinstance(history, HistoryPage)
     history.search()
     history.film.setCurrentRow(0)
-    history._on_chosen()
+    history.show_chosen()
     assert history.record.weld.drawn is None
-    assert "no longer kept" in history.record.weld._note
+    assert "was deleted" in history.record.weld.note
     assert "cannot be read" in history.record.problem.text()
-    assert history.record.strip._scores
+    assert history.record.strip.scores
 
 
 def test_five_wrong_pins_are_said_and_a_level_holds(window: Window, qtbot: QtBot) -> None:
@@ -235,7 +235,7 @@ def test_five_wrong_pins_are_said_and_a_level_holds(window: Window, qtbot: QtBot
         setup = log_in(window, qtbot, "Sam", "0000")
         assert setup.login.problem.text() == "unknown name or wrong PIN"
     setup = log_in(window, qtbot, "Sam", "3456")
-    assert "locked for a minute" in setup.login.problem.text()
+    assert "Locked for one minute" in setup.login.problem.text()
     assert window.session.account.user is None
     assert not setup.people.save.isEnabled()
     assert not setup.camera.live.isEnabled()
@@ -281,13 +281,13 @@ def test_the_defect_map_of_the_last_nok_is_laid_over_its_strip(
     qtbot.waitUntil(lambda: len(window.session.received.parts) == 4, timeout=10_000)
     qtbot.waitUntil(live.show_map.isEnabled, timeout=10_000)
     qtbot.mouseClick(live.show_map, LEFT)
-    qtbot.waitUntil(lambda: live._nok_strip._map is not None, timeout=20_000)
-    qtbot.mouseClick(live._nok_strip, LEFT)
+    qtbot.waitUntil(lambda: live.nok_strip.overlay is not None, timeout=20_000)
+    qtbot.mouseClick(live.nok_strip, LEFT)
     history = window.page
     assert isinstance(history, HistoryPage)
     assert window.session.received.last_nok is not None
     assert history.film.chosen() == window.session.received.last_nok.part.record.inspection_id
-    overlay = live._nok_strip._map
+    overlay = live.nok_strip.overlay
     assert overlay is not None
     seen = [
         overlay.pixelColor(x, y).alpha()
@@ -310,7 +310,7 @@ def test_recorded_parts_are_judged_again_in_the_window(
     qtbot.mouseClick(page.judge, LEFT)
     qtbot.waitUntil(lambda: page.done is not None, timeout=20_000)
     assert page.table.rowCount() == 4
-    assert page.said.text().endswith("4 compared with the line, 0 verdicts differ")
+    assert page.message.text().endswith("4 compared with the line, 0 verdicts differ")
     nok = [a for a in answers if a.verdict is VerdictCode.NOK]
     assert sum(row[2] == "NOK" for row in page.table.texts()) == len(nok)
     page.table.selectRow(0)
@@ -324,9 +324,9 @@ def test_recorded_parts_are_judged_again_in_the_window(
     assert "4 parts compared" in (tmp_path / "out" / "report.html").read_text()
     page.folder.setText(str(tmp_path / "nowhere"))
     page.what.setCurrentIndex(page.what.count() - 1)
-    qtbot.waitUntil(lambda: not page._work.busy, timeout=5000)
+    qtbot.waitUntil(lambda: not page.work.busy, timeout=5000)
     page.start()
-    qtbot.waitUntil(lambda: "no such file or folder" in page._problem.text(), timeout=10_000)
+    qtbot.waitUntil(lambda: "no such file or folder" in page.problem.text(), timeout=10_000)
 
 
 def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
@@ -343,30 +343,30 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
     fields.state.setCurrentText("to be confirmed")
     assert sorted(page.film.rows) == nok
     page.film.setCurrentRow(0)
-    page.say(Opinion.RIGHT)
-    qtbot.waitUntil(lambda: not page._waiting, timeout=5000)
+    page.give_review(Opinion.RIGHT)
+    qtbot.waitUntil(lambda: not page.waiting, timeout=5000)
     fields.state.setCurrentText("reviewed once")
     assert list(page.film.rows) == [nok[-1]]
     qtbot.waitUntil(page.show_map.isEnabled, timeout=5000)
     qtbot.mouseClick(page.show_map, LEFT)
-    qtbot.waitUntil(lambda: page.record.strip._map is not None, timeout=20_000)
+    qtbot.waitUntil(lambda: page.record.strip.overlay is not None, timeout=20_000)
     fields.state.setCurrentIndex(0)
     ok = next(a.inspection_id for a in answers if a.verdict is VerdictCode.OK)
     page.film.setCurrentRow(list(page.film.rows).index(ok))
-    missed = page.opinions[Opinion.MISSED]
+    missed = page.reviewing.opinions[Opinion.MISSED]
     assert not missed.isEnabled(), "nobody has said where"
     for _ in range(2):
         qtbot.mouseClick(page.record.strip, LEFT, pos=QPoint(page.record.strip.width() // 2, 20))
     qtbot.mouseClick(missed, LEFT)
-    qtbot.waitUntil(lambda: not page._waiting, timeout=5000)
+    qtbot.waitUntil(lambda: not page.waiting, timeout=5000)
     assert reviews(window.session.received.folder)[ok].marks == {"Ada": {11: Reason.MISSING_WELD}}
     assert not missed.isEnabled(), "the marks are hers, not those of the next"
     fields.since.setCurrentText("from … to …")
     assert fields.begin.isVisible()
     assert len(page.film.rows) == 4
-    page.list_to(tmp_path / "parts.csv")
+    page.exports.write_table(tmp_path / "parts.csv")
     qtbot.waitUntil((tmp_path / "parts.csv").exists, timeout=10_000)
-    qtbot.waitUntil(lambda: not page._work.busy, timeout=5000)
+    qtbot.waitUntil(lambda: not page.work.busy, timeout=5000)
     assert len((tmp_path / "parts.csv").read_text().splitlines()) == 5
     fields.end.setDateTime(fields.begin.dateTime().addSecs(60))
     page.search()

@@ -1,4 +1,4 @@
-"""What the window shows of rights and changes: the engine decides, and nothing typed or asked by one stays for the next."""
+"""Rights and changes in the window: the engine decides, and what one user typed is gone for the next."""
 
 import time
 from datetime import UTC, datetime
@@ -82,7 +82,7 @@ def test_the_engine_ends_a_login_and_the_window_says_so(window: Window, desk: De
         desk.requests._desk._logins.end(token)
     qtbot.waitUntil(lambda: session.account.user is None, timeout=5000)
     assert session.service.held is None
-    assert window._user.text() == "Log in"
+    assert window.user.text() == "Log in"
 
 
 def test_without_an_engine_nobody_logs_in_and_it_is_said(window: Window, qtbot: QtBot) -> None:
@@ -109,10 +109,10 @@ def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
     assert not page.zero.isEnabled()
     qtbot.waitUntil(page.zero.isEnabled, timeout=5000)
     assert desk.given == [orders.ResetCounts("Ada")]
-    assert page._problem.text() == ""
+    assert page.problem.text() == ""
     desk.close()
     page.zero.click()
-    qtbot.waitUntil(lambda: page._problem.text() == NO_CONNECTION, timeout=5000)
+    qtbot.waitUntil(lambda: page.problem.text() == NO_CONNECTION, timeout=5000)
     assert page.zero.isEnabled()
     assert window.session.account.user is not None, "the engine may come back"
 
@@ -170,10 +170,10 @@ def test_the_line_page_of_an_absent_engine_claims_nothing(window: Window) -> Non
     page = window.page
     assert isinstance(page, LinePage)
     window.session.bridge.status.emit(status())
-    assert page._lamps["STATUS", Status.READY].text() == "● READY"
+    assert page.lamps["STATUS", Status.READY].text() == "● READY"
     window.session.bridge.status.emit(status(at_s=time.monotonic() - 10))
-    assert page._lamps["STATUS", Status.READY].text() == "? READY"
-    assert page._stale.isVisible()
+    assert page.lamps["STATUS", Status.READY].text() == "? READY"
+    assert page.stale.isVisible()
 
 
 def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
@@ -202,11 +202,11 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
         qtbot.waitUntil(page.save.isEnabled, timeout=10_000)
 
     asked()
-    assert page.said.text().startswith("1 parts")
+    assert page.message.text().startswith("1 parts")
     page.recipe.setCurrentIndex(1)
     page.fields["limits.hole.threshold"].edit.setText("0.9")
     assert not page.save.isEnabled(), "nobody asked what if of recipe 2"
-    assert page.said.text() == ""
+    assert page.message.text() == ""
     page.recipe.setCurrentIndex(0)
     asked()
     page.fields["limits.hole.threshold"].edit.setText("0.8")
@@ -271,9 +271,9 @@ def test_what_the_engine_refuses_is_said_on_the_page(window: Window, desk: Desk,
     assert isinstance(page, LivePage)
 
     def asked() -> None:
-        page._ask_test()
+        page.take_test_image()
         qtbot.wait(100)
-        assert page._nok_text.text() == "a login of the level operator is needed"
+        assert page.nok_text.text() == "a login of the level operator is needed"
 
     qtbot.waitUntil(asked, timeout=5000)
     assert desk.given == []

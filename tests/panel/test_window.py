@@ -61,8 +61,8 @@ def test_events_reach_the_window(
         assert window.session.received.last_nok is not None
 
     qtbot.waitUntil(told, timeout=5000)
-    assert window._badge.text() == "SIMULATED CAMERA"
-    assert window._buttons[PageKey.ALARMS].text() == "Alarms (1)"
+    assert window.badge.text() == "SIMULATED CAMERA"
+    assert window.buttons[PageKey.ALARMS].text() == "Alarms (1)"
     assert live(window).clock.counts[3] >= 1
     picture = window.grab().toImage()
     colors = {
@@ -80,9 +80,9 @@ def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(
     item = label_with("OK")
     session.bridge.parts.emit([part(ok_inspection(), 1)])
     session.bridge.preview.emit(make_preview(1, frames[item["frame"]], None))
-    assert live(window).weld._note == ""
+    assert live(window).weld.note == ""
     session.bridge.parts.emit([part(ok_inspection(), 2)])
-    assert "no picture of this part" in live(window).weld._note
+    assert "no image of this part" in live(window).weld.note
 
 
 def test_the_button_asks_the_engine_for_a_test_picture(
@@ -110,7 +110,7 @@ def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> No
     session.bridge.status.emit(status(at_s=time.monotonic() - 10))
     live(window).age()
     assert live(window).lamp.lamp.word == "OFFLINE"
-    assert "no connection to the engine" in window._alarm.text()
+    assert "No connection to the engine" in window.alarm.text()
 
 
 def test_a_restarted_engine_needs_no_new_panel(
@@ -134,7 +134,7 @@ def test_language_and_theme_change_at_once_and_nothing_is_forgotten(window: Wind
     window.session.bridge.parts.emit([part(nok_inspection(), 5)])
     window.go(PageKey.STATISTICS)
     window.speak("de")
-    titles = [button.text() for button in window._buttons.values()]
+    titles = [button.text() for button in window.buttons.values()]
     assert titles == ["Live", "Verlauf", "Statistik", "Linie", "Alarme", "Einrichten", "Wiedergabe"]
     assert window.shown is PageKey.STATISTICS
     window.dress("light")
@@ -171,17 +171,17 @@ def test_keys_lead_to_pages(window: Window, qtbot: QtBot) -> None:
     for number, info in enumerate(PAGES):
         qtbot.keyClick(window, Qt.Key(Qt.Key.Key_F1.value + number))
         assert window.shown is info.key
-        assert window._buttons[info.key].isChecked()
+        assert window.buttons[info.key].isChecked()
 
 
 def test_each_page_has_one_line_in_the_table_and_its_button_leads_to_it(window: Window, qtbot: QtBot) -> None:
     assert [info.key for info in PAGES] == list(PageKey)
-    for key, button in window._buttons.items():
+    for key, button in window.buttons.items():
         qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
         assert window.shown is key
-    qtbot.mouseClick(window._user, Qt.MouseButton.LeftButton)
+    qtbot.mouseClick(window.user, Qt.MouseButton.LeftButton)
     assert window.shown is PageKey.SETUP
-    window._alarm.click()
+    window.alarm.click()
     assert window.shown is PageKey.ALARMS
     window.session.part_chosen.emit(1)
     assert window.shown is PageKey.HISTORY
@@ -194,13 +194,13 @@ def test_keys_on_the_screen_write_where_the_cursor_stands(window: Window, qtbot:
     assert isinstance(page, HistoryPage)
     window.activateWindow()
     page.fields.serial.setFocus()
-    window._typing.click()
+    window.keyboard.click()
     (keys,) = window.findChildren(Keys)
     for text in ("⇧", "z", "ü", "␣", "7", "⌫"):
         (key,) = [button for button in keys.findChildren(QPushButton) if button.text().lower() == text]
         qtbot.mouseClick(key, Qt.MouseButton.LeftButton)
     assert page.fields.serial.text() == "Zü "
-    window._typing.click()
+    window.keyboard.click()
     qtbot.waitUntil(lambda: not window.findChildren(Keys), timeout=1000)
 
 

@@ -68,8 +68,8 @@ def test_the_next_job_may_be_started_by_the_result_of_the_one_before(bar: WorkBa
 def test_cancelled_work_ends_soon_and_hands_nothing_over(bar: WorkBar, qtbot: QtBot) -> None:
     results: list[object] = []
     bar.start("counting", forever, results.append)
-    qtbot.waitUntil(lambda: bar._bar.value() > 3, timeout=5000)
-    bar._cancel.click()
+    qtbot.waitUntil(lambda: bar.bar.value() > 3, timeout=5000)
+    bar.cancel_button.click()
     qtbot.waitUntil(lambda: not bar.busy, timeout=5000)
     assert not results
 

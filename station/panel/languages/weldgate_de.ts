@@ -12,8 +12,24 @@
         <translation>Ursache</translation>
     </message>
     <message>
+        <source>Choose an alarm and acknowledge it. The journal records who did.</source>
+        <translation>Alarm wählen und quittieren. Das Journal hält fest, wer quittiert hat.</translation>
+    </message>
+    <message>
         <source>what to do</source>
         <translation>was zu tun ist</translation>
+    </message>
+    <message>
+        <source>active</source>
+        <translation>aktiv</translation>
+    </message>
+    <message>
+        <source>Log in first (page Setup).</source>
+        <translation>Zuerst anmelden (Seite Einrichten).</translation>
+    </message>
+    <message>
+        <source>Choose an alarm first.</source>
+        <translation>Zuerst einen Alarm wählen.</translation>
     </message>
     <message>
         <source>since</source>
@@ -31,36 +47,12 @@
         <source>Acknowledge</source>
         <translation>Quittieren</translation>
     </message>
-    <message>
-        <source>Choose an alarm to acknowledge it; who is logged in is noted.</source>
-        <translation>Zum Quittieren einen Alarm wählen; vermerkt wird, wer angemeldet ist.</translation>
-    </message>
-    <message>
-        <source>lasts</source>
-        <translation>dauert an</translation>
-    </message>
-    <message>
-        <source>log in first (page Setup)</source>
-        <translation>erst anmelden (Seite Einrichten)</translation>
-    </message>
-    <message>
-        <source>choose an alarm first</source>
-        <translation>erst einen Alarm wählen</translation>
-    </message>
 </context>
 <context>
     <name>camera</name>
     <message>
-        <source>Live pictures</source>
-        <translation>Laufende Bilder</translation>
-    </message>
-    <message>
         <source>Save</source>
         <translation>Speichern</translation>
-    </message>
-    <message>
-        <source>reason (needed)</source>
-        <translation>Grund (nötig)</translation>
     </message>
     <message>
         <source>grey levels</source>
@@ -71,20 +63,28 @@
         <translation>Schärfe · beste bisher</translation>
     </message>
     <message>
-        <source>brightness (0 to 255)</source>
-        <translation>Helligkeit (0 bis 255)</translation>
+        <source>Live image</source>
+        <translation>Livebild</translation>
     </message>
     <message>
-        <source>saturated</source>
-        <translation>übersteuert</translation>
+        <source>reason (required)</source>
+        <translation>Grund (erforderlich)</translation>
     </message>
     <message>
-        <source>ring radius · expected px</source>
-        <translation>Ringradius · erwartet px</translation>
+        <source>mean brightness (0 to 255)</source>
+        <translation>mittlere Helligkeit (0 bis 255)</translation>
     </message>
     <message>
-        <source>ring residual px · support</source>
-        <translation>Ring-Abweichung px · Anteil</translation>
+        <source>saturated fraction</source>
+        <translation>übersteuerter Anteil</translation>
+    </message>
+    <message>
+        <source>ring radius · expected (px)</source>
+        <translation>Ringradius · erwartet (px)</translation>
+    </message>
+    <message>
+        <source>ring residual (px) · support</source>
+        <translation>Ringabweichung (px) · Abdeckung</translation>
     </message>
     <message>
         <source>exposure</source>
@@ -99,20 +99,20 @@
         <translation>Einstellungen</translation>
     </message>
     <message>
-        <source>saved and in use</source>
-        <translation>gespeichert und in Gebrauch</translation>
+        <source>Saved and in use.</source>
+        <translation>Gespeichert und in Gebrauch.</translation>
     </message>
     <message>
-        <source>nothing was changed:</source>
-        <translation>nichts wurde geändert:</translation>
+        <source>Nothing was changed:</source>
+        <translation>Nichts wurde geändert:</translation>
     </message>
     <message>
-        <source>waiting for the engine</source>
-        <translation>wartet auf die Prüfung</translation>
+        <source>Log in as setter first.</source>
+        <translation>Zuerst als Einrichter anmelden.</translation>
     </message>
     <message>
-        <source>log in as setter first</source>
-        <translation>erst als Einrichter anmelden</translation>
+        <source>Waiting for the engine...</source>
+        <translation>Warten auf das Prüfprogramm ...</translation>
     </message>
 </context>
 <context>
@@ -187,7 +187,7 @@
     </message>
     <message>
         <source>weld not wholly in view</source>
-        <translation>Naht nicht ganz im Bild</translation>
+        <translation>Naht nicht vollständig im Bild</translation>
     </message>
     <message>
         <source>frame has the wrong size</source>
@@ -215,19 +215,19 @@
     </message>
     <message>
         <source>no frame in time</source>
-        <translation>kein Bild rechtzeitig</translation>
+        <translation>Bild kam nicht rechtzeitig</translation>
     </message>
     <message>
         <source>deadline missed</source>
-        <translation>Frist verpasst</translation>
+        <translation>Frist überschritten</translation>
     </message>
     <message>
         <source>classifier failed</source>
-        <translation>Klassifikator versagte</translation>
+        <translation>Klassifikator ausgefallen</translation>
     </message>
     <message>
         <source>record could not be written</source>
-        <translation>Datensatz nicht schreibbar</translation>
+        <translation>Datensatz konnte nicht geschrieben werden</translation>
     </message>
     <message>
         <source>aborted by the PLC</source>
@@ -511,7 +511,7 @@
     </message>
     <message>
         <source>idle</source>
-        <translation>untätig</translation>
+        <translation>Inaktivität</translation>
     </message>
     <message>
         <source>asked to</source>
@@ -550,6 +550,22 @@
         <translation>die Platte war zu langsam</translation>
     </message>
     <message>
+        <source>the camera sent no image of this part</source>
+        <translation>von diesem Teil kam kein Bild der Kamera</translation>
+    </message>
+    <message>
+        <source>the image of this part was deleted</source>
+        <translation>das Bild dieses Teils wurde gelöscht</translation>
+    </message>
+    <message>
+        <source>no weld was found on this part</source>
+        <translation>auf diesem Teil wurde keine Naht gefunden</translation>
+    </message>
+    <message>
+        <source>no defect map: another model judged this part</source>
+        <translation>keine Fehlerkarte: ein anderes Modell hat dieses Teil beurteilt</translation>
+    </message>
+    <message>
         <source>rule broken: TRIGGER while READY was 0</source>
         <translation>Regelbruch: TRIGGER bei READY 0</translation>
     </message>
@@ -584,18 +600,6 @@
     <message>
         <source>unknown name or wrong PIN</source>
         <translation>Name unbekannt oder PIN falsch</translation>
-    </message>
-    <message>
-        <source>no picture came</source>
-        <translation>es kam kein Bild</translation>
-    </message>
-    <message>
-        <source>its picture is no longer kept</source>
-        <translation>das Bild wird nicht mehr aufgehoben</translation>
-    </message>
-    <message>
-        <source>another model judged it: where that saw defects is not known</source>
-        <translation>ein anderes Modell hat es beurteilt: wo das Fehler sah, ist nicht bekannt</translation>
     </message>
     <message>
         <source>a login of the level operator is needed</source>
@@ -666,10 +670,6 @@
         <translation>Keine Verbindung zum Prüfprogramm.</translation>
     </message>
     <message>
-        <source>no weld was found in it</source>
-        <translation>es wurde keine Naht darin gefunden</translation>
-    </message>
-    <message>
         <source>the request came too late: nothing was done</source>
         <translation>die Anfrage kam zu spät: nichts wurde getan</translation>
     </message>
@@ -723,7 +723,7 @@
     </message>
     <message>
         <source>the engine stops</source>
-        <translation>die Prüfung endet</translation>
+        <translation>das Prüfprogramm wird beendet</translation>
     </message>
     <message>
         <source>service mode</source>
@@ -764,10 +764,6 @@
 <context>
     <name>history</name>
     <message>
-        <source>serial, or its beginning with *</source>
-        <translation>Seriennummer, oder ihr Anfang mit *</translation>
-    </message>
-    <message>
         <source>from … to …</source>
         <translation>von … bis …</translation>
     </message>
@@ -782,6 +778,10 @@
     <message>
         <source>from</source>
         <translation>von</translation>
+    </message>
+    <message>
+        <source>serial, or prefix and *</source>
+        <translation>Seriennummer oder Anfang und *</translation>
     </message>
     <message>
         <source>to</source>
@@ -824,8 +824,16 @@
         <translation>Galerie</translation>
     </message>
     <message>
+        <source>Reading images</source>
+        <translation>Bilder werden gelesen</translation>
+    </message>
+    <message>
+        <source>Computing the defect map</source>
+        <translation>Fehlerkarte wird berechnet</translation>
+    </message>
+    <message>
         <source>comment</source>
-        <translation>Bemerkung</translation>
+        <translation>Kommentar</translation>
     </message>
     <message>
         <source>Verdict is right</source>
@@ -840,6 +848,10 @@
         <translation>Übersehen</translation>
     </message>
     <message>
+        <source>touch the segments in which a defect was missed</source>
+        <translation>Segmente antippen, in denen ein Fehler übersehen wurde</translation>
+    </message>
+    <message>
         <source>Defect map</source>
         <translation>Fehlerkarte</translation>
     </message>
@@ -848,76 +860,40 @@
         <translation>Tabelle…</translation>
     </message>
     <message>
-        <source>the parts that were found, as CSV</source>
-        <translation>die gefundenen Teile als CSV</translation>
+        <source>Write the found parts as CSV</source>
+        <translation>Gefundene Teile als CSV schreiben</translation>
+    </message>
+    <message>
+        <source>Writing the table</source>
+        <translation>Tabelle wird geschrieben</translation>
+    </message>
+    <message>
+        <source>Exporting crops</source>
+        <translation>Ausschnitte werden exportiert</translation>
+    </message>
+    <message>
+        <source>{path}: {parts} parts written, {left_out} left out</source>
+        <translation>{path}: {parts} Teile geschrieben, {left_out} ausgelassen</translation>
     </message>
     <message>
         <source>Export reviewed…</source>
-        <translation>Nachgeprüfte ausgeben…</translation>
+        <translation>Nachgeprüfte exportieren…</translation>
     </message>
     <message>
         <source>the newest 300</source>
         <translation>die neuesten 300</translation>
     </message>
     <message>
-        <source>parts</source>
-        <translation>Teile</translation>
-    </message>
-    <message>
         <source>log in to review</source>
         <translation>zum Nachprüfen anmelden</translation>
-    </message>
-    <message>
-        <source>touch the cells in which a defect was missed</source>
-        <translation>die Zellen antippen, in denen ein Fehler übersehen wurde</translation>
-    </message>
-    <message>
-        <source>pictures</source>
-        <translation>Bilder</translation>
     </message>
     <message>
         <source>Folder for the crops of reviewed parts</source>
         <translation>Ordner für die Ausschnitte nachgeprüfter Teile</translation>
     </message>
     <message>
-        <source>table</source>
-        <translation>Tabelle</translation>
-    </message>
-    <message>
-        <source>defect map</source>
-        <translation>Fehlerkarte</translation>
-    </message>
-    <message>
-        <source>left out</source>
-        <translation>ausgelassen</translation>
-    </message>
-    <message>
-        <source>export</source>
-        <translation>Ausgabe</translation>
-    </message>
-    <message>
         <source>finding</source>
         <translation>Befund</translation>
-    </message>
-    <message>
-        <source>from °</source>
-        <translation>von °</translation>
-    </message>
-    <message>
-        <source>to °</source>
-        <translation>bis °</translation>
-    </message>
-    <message>
-        <source>length mm</source>
-        <translation>Länge mm</translation>
-    </message>
-    <message>
-        <source>width mm</source>
-        <translation>Breite mm</translation>
-    </message>
-    <message>
-        <source>area mm²</source>
-        <translation>Fläche mm²</translation>
     </message>
     <message>
         <source>score</source>
@@ -936,10 +912,6 @@
         <translation>Zeit</translation>
     </message>
     <message>
-        <source>seen by the PLC</source>
-        <translation>von der SPS gesehen</translation>
-    </message>
-    <message>
         <source>part · trigger</source>
         <translation>Teil · Trigger</translation>
     </message>
@@ -948,28 +920,16 @@
         <translation>Helligkeit · Schärfe · übersteuert</translation>
     </message>
     <message>
-        <source>ring x · y · r · residual px</source>
-        <translation>Ring x · y · r · Abweichung px</translation>
-    </message>
-    <message>
         <source>distance to the training images</source>
         <translation>Abstand zu den Trainingsbildern</translation>
     </message>
     <message>
-        <source>steps ms</source>
-        <translation>Zeiten ms</translation>
-    </message>
-    <message>
         <source>limits</source>
-        <translation>Grenzen</translation>
+        <translation>Grenzwerte</translation>
     </message>
     <message>
         <source>model · recipe</source>
         <translation>Modell · Rezept</translation>
-    </message>
-    <message>
-        <source>model&apos;s hash · configuration</source>
-        <translation>Modell-Hash · Konfiguration</translation>
     </message>
     <message>
         <source>origin · purpose</source>
@@ -980,16 +940,8 @@
         <translation>Befunde</translation>
     </message>
     <message>
-        <source>the record cannot be read</source>
-        <translation>der Datensatz ist nicht lesbar</translation>
-    </message>
-    <message>
         <source>no part</source>
         <translation>kein Teil</translation>
-    </message>
-    <message>
-        <source>its picture cannot be read</source>
-        <translation>das Bild ist nicht lesbar</translation>
     </message>
     <message>
         <source>tolerated</source>
@@ -998,6 +950,50 @@
     <message>
         <source>yes</source>
         <translation>ja</translation>
+    </message>
+    <message>
+        <source>from (°)</source>
+        <translation>von (°)</translation>
+    </message>
+    <message>
+        <source>to (°)</source>
+        <translation>bis (°)</translation>
+    </message>
+    <message>
+        <source>length (mm)</source>
+        <translation>Länge (mm)</translation>
+    </message>
+    <message>
+        <source>width (mm)</source>
+        <translation>Breite (mm)</translation>
+    </message>
+    <message>
+        <source>area (mm²)</source>
+        <translation>Fläche (mm²)</translation>
+    </message>
+    <message>
+        <source>reported to the PLC</source>
+        <translation>an die SPS gemeldet</translation>
+    </message>
+    <message>
+        <source>ring x · y · radius · residual (px)</source>
+        <translation>Ring x · y · Radius · Abweichung (px)</translation>
+    </message>
+    <message>
+        <source>times of the steps (ms)</source>
+        <translation>Zeiten der Schritte (ms)</translation>
+    </message>
+    <message>
+        <source>model hash · configuration</source>
+        <translation>Modell-Hash · Konfiguration</translation>
+    </message>
+    <message>
+        <source>The record cannot be read.</source>
+        <translation>Der Datensatz ist nicht lesbar.</translation>
+    </message>
+    <message>
+        <source>The image cannot be read.</source>
+        <translation>Das Bild ist nicht lesbar.</translation>
     </message>
     <message>
         <source>no</source>
@@ -1023,12 +1019,12 @@
         <translation>wer</translation>
     </message>
     <message>
-        <source>what</source>
-        <translation>was</translation>
+        <source>action</source>
+        <translation>Aktion</translation>
     </message>
     <message>
-        <source>of</source>
-        <translation>woran</translation>
+        <source>object</source>
+        <translation>Gegenstand</translation>
     </message>
     <message>
         <source>before</source>
@@ -1074,16 +1070,36 @@
         <translation>von</translation>
     </message>
     <message>
-        <source>what</source>
-        <translation>was</translation>
+        <source>signal</source>
+        <translation>Signal</translation>
+    </message>
+    <message>
+        <source>No connection to the engine. The registers show their last values.</source>
+        <translation>Keine Verbindung zum Prüfprogramm. Die Register zeigen die letzten Werte.</translation>
+    </message>
+    <message>
+        <source>registers</source>
+        <translation>Register</translation>
+    </message>
+    <message>
+        <source>edges on the bus, newest first</source>
+        <translation>Flanken auf dem Bus, neueste zuerst</translation>
+    </message>
+    <message>
+        <source>Word order: the PLC must read TEST_U32 as 16#12345678 (305419896) and TEST_F32 as 123.456. Words sent:</source>
+        <translation>Wortfolge: Die SPS muss TEST_U32 als 16#12345678 (305419896) und TEST_F32 als 123,456 lesen. Gesendete Worte:</translation>
+    </message>
+    <message>
+        <source>If it reads 16#56781234, swap the words in the PLC or set plc.low_word_first.</source>
+        <translation>Liest sie 16#56781234, die Worte in der SPS tauschen oder plc.low_word_first setzen.</translation>
+    </message>
+    <message>
+        <source>Log in as setter first (page Setup).</source>
+        <translation>Zuerst als Einrichter anmelden (Seite Einrichten).</translation>
     </message>
     <message>
         <source>note</source>
         <translation>Anmerkung</translation>
-    </message>
-    <message>
-        <source>no word from the engine: the registers are as they last were</source>
-        <translation>die Prüfung meldet sich nicht: Register, wie sie zuletzt waren</translation>
     </message>
     <message>
         <source>Service mode</source>
@@ -1100,26 +1116,6 @@
     <message>
         <source>set one bit of STATUS by hand:</source>
         <translation>ein Bit von STATUS von Hand setzen:</translation>
-    </message>
-    <message>
-        <source>Registers as the PLC has them</source>
-        <translation>Register, wie die SPS sie hat</translation>
-    </message>
-    <message>
-        <source>Edges on the bus, the newest first</source>
-        <translation>Flanken auf dem Bus, die neueste zuerst</translation>
-    </message>
-    <message>
-        <source>Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:</source>
-        <translation>Wortfolge: TEST_U32 muss 16#12345678 (305419896) ergeben, TEST_F32 123,456. Gesendete Worte:</translation>
-    </message>
-    <message>
-        <source>If the PLC reads 16#56781234, exchange its words or set plc.low_word_first.</source>
-        <translation>Liest die SPS 16#56781234, dort die Worte tauschen oder plc.low_word_first setzen.</translation>
-    </message>
-    <message>
-        <source>log in as setter first (page Setup)</source>
-        <translation>erst als Einrichter anmelden (Seite Einrichten)</translation>
     </message>
 </context>
 <context>
@@ -1141,48 +1137,24 @@
         <translation>Takt</translation>
     </message>
     <message>
-        <source>picture</source>
-        <translation>Bild</translation>
-    </message>
-    <message>
         <source>parts</source>
         <translation>Teile</translation>
     </message>
     <message>
         <source>not judged</source>
-        <translation>ungeprüft</translation>
+        <translation>nicht beurteilt</translation>
     </message>
     <message>
         <source>yield</source>
         <translation>Ausbeute</translation>
     </message>
     <message>
-        <source>Test picture</source>
-        <translation>Testbild</translation>
-    </message>
-    <message>
-        <source>Take a picture of what lies there now and judge it; the PLC is told nothing</source>
-        <translation>Bild von dem, was gerade da liegt, aufnehmen und beurteilen; die SPS erfährt nichts</translation>
-    </message>
-    <message>
         <source>Hold</source>
         <translation>Halten</translation>
     </message>
     <message>
-        <source>The picture stays; lamp and counters go on</source>
-        <translation>Das Bild bleibt stehen; Lampe und Zähler laufen weiter</translation>
-    </message>
-    <message>
         <source>Defect map</source>
         <translation>Fehlerkarte</translation>
-    </message>
-    <message>
-        <source>Where the network sees defects in the last NOK part</source>
-        <translation>Wo das Netz im letzten NOK-Teil Fehler sieht</translation>
-    </message>
-    <message>
-        <source>NOK segments of the last parts</source>
-        <translation>NOK-Segmente der letzten Teile</translation>
     </message>
     <message>
         <source>last NOK</source>
@@ -1194,30 +1166,54 @@
     </message>
     <message>
         <source>UNLIKE TRAINING</source>
-        <translation>FREMDARTIG</translation>
+        <translation>UNBEKANNT</translation>
     </message>
     <message>
-        <source>DRIFTING</source>
-        <translation>DRIFTET</translation>
+        <source>image</source>
+        <translation>Bild</translation>
     </message>
     <message>
-        <source>HELD</source>
-        <translation>GEHALTEN</translation>
+        <source>Test image</source>
+        <translation>Testbild</translation>
     </message>
     <message>
-        <source>no picture of this part</source>
+        <source>Take an image now and judge it. Nothing is reported to the PLC.</source>
+        <translation>Jetzt ein Bild aufnehmen und beurteilen. An die SPS wird nichts gemeldet.</translation>
+    </message>
+    <message>
+        <source>Keep this image on the page. Lamp and counters continue.</source>
+        <translation>Dieses Bild stehen lassen. Lampe und Zähler laufen weiter.</translation>
+    </message>
+    <message>
+        <source>Show where the network sees defects on the last NOK part</source>
+        <translation>Zeigen, wo das Netz auf dem letzten NOK-Teil Fehler sieht</translation>
+    </message>
+    <message>
+        <source>NOK segments of the newest parts</source>
+        <translation>NOK-Segmente der neuesten Teile</translation>
+    </message>
+    <message>
+        <source>no image of this part</source>
         <translation>kein Bild dieses Teils</translation>
     </message>
     <message>
-        <source>defect map</source>
-        <translation>Fehlerkarte</translation>
+        <source>Computing the defect map</source>
+        <translation>Fehlerkarte wird berechnet</translation>
+    </message>
+    <message>
+        <source>DRIFTING</source>
+        <translation>DRIFT</translation>
+    </message>
+    <message>
+        <source>HELD</source>
+        <translation>ANGEHALTEN</translation>
     </message>
     <message>
         <source>segment</source>
         <translation>Segment</translation>
     </message>
     <message>
-        <source>no picture yet</source>
+        <source>no image yet</source>
         <translation>noch kein Bild</translation>
     </message>
 </context>
@@ -1240,24 +1236,24 @@
         <translation>PIN</translation>
     </message>
     <message>
-        <source>nobody is logged in</source>
-        <translation>niemand ist angemeldet</translation>
+        <source>Nobody is logged in.</source>
+        <translation>Niemand ist angemeldet.</translation>
+    </message>
+    <message>
+        <source>There are no users yet. The first person to enter a name and a PIN of 4 to 12 digits becomes administrator.</source>
+        <translation>Noch sind keine Benutzer angelegt. Wer als Erster einen Namen und eine PIN mit 4 bis 12 Ziffern eingibt, wird Administrator.</translation>
+    </message>
+    <message>
+        <source>Anyone can watch; every action needs a login. Five wrong PINs lock a user for one minute.</source>
+        <translation>Zusehen kann jeder; jede Aktion erfordert eine Anmeldung. Fünf falsche PINs sperren einen Benutzer für eine Minute.</translation>
+    </message>
+    <message>
+        <source>Locked for one minute after five wrong PINs.</source>
+        <translation>Nach fünf falschen PINs für eine Minute gesperrt.</translation>
     </message>
     <message>
         <source>Become administrator</source>
         <translation>Administrator werden</translation>
-    </message>
-    <message>
-        <source>Nobody is known yet: whoever gives a name and a PIN of at least 4 digits becomes administrator.</source>
-        <translation>Noch ist niemand bekannt: Wer einen Namen und eine PIN von mindestens 4 Ziffern angibt, wird Administrator.</translation>
-    </message>
-    <message>
-        <source>Watching needs no login, doing does. Five wrong PINs lock a name for a minute.</source>
-        <translation>Zusehen geht ohne Anmeldung, alles andere nicht. Fünf falsche PINs sperren einen Namen für eine Minute.</translation>
-    </message>
-    <message>
-        <source>locked for a minute after five wrong PINs</source>
-        <translation>nach fünf falschen PINs für eine Minute gesperrt</translation>
     </message>
 </context>
 <context>
@@ -1267,12 +1263,12 @@
         <translation>Meisterteil</translation>
     </message>
     <message>
-        <source>must be</source>
-        <translation>muss sein</translation>
+        <source>expected</source>
+        <translation>Soll</translation>
     </message>
     <message>
-        <source>was judged</source>
-        <translation>wurde beurteilt</translation>
+        <source>result</source>
+        <translation>Ergebnis</translation>
     </message>
     <message>
         <source>last check</source>
@@ -1284,7 +1280,7 @@
     </message>
     <message>
         <source>state</source>
-        <translation>Stand</translation>
+        <translation>Zustand</translation>
     </message>
     <message>
         <source>time</source>
@@ -1295,20 +1291,32 @@
         <translation>Teil</translation>
     </message>
     <message>
-        <source>Judge the chosen master</source>
+        <source>Check chosen master</source>
         <translation>Gewähltes Meisterteil prüfen</translation>
     </message>
     <message>
-        <source>Put the master in, choose it, judge it. The PLC can ask for it too (GOLDEN_CHECK).</source>
-        <translation>Meisterteil einlegen, wählen, prüfen. Auch die SPS kann danach fragen (GOLDEN_CHECK).</translation>
+        <source>Insert a master, choose it here and check it. The PLC can request the check too (GOLDEN_CHECK).</source>
+        <translation>Meisterteil einlegen, hier wählen und prüfen. Auch die SPS kann die Prüfung anfordern (GOLDEN_CHECK).</translation>
+    </message>
+    <message>
+        <source>past checks</source>
+        <translation>bisherige Prüfungen</translation>
+    </message>
+    <message>
+        <source>No masters are defined. Add [golden.masters] to the settings file.</source>
+        <translation>Es sind keine Meisterteile festgelegt. [golden.masters] in die Einstellungsdatei eintragen.</translation>
+    </message>
+    <message>
+        <source>Log in as setter to check masters.</source>
+        <translation>Zum Prüfen von Meisterteilen als Einrichter anmelden.</translation>
+    </message>
+    <message>
+        <source>Choose a master first.</source>
+        <translation>Zuerst ein Meisterteil wählen.</translation>
     </message>
     <message>
         <source>masters</source>
         <translation>Meisterteile</translation>
-    </message>
-    <message>
-        <source>log of the checks</source>
-        <translation>Protokoll der Prüfungen</translation>
     </message>
     <message>
         <source>WRONG</source>
@@ -1317,18 +1325,6 @@
     <message>
         <source>DUE</source>
         <translation>FÄLLIG</translation>
-    </message>
-    <message>
-        <source>no masters are named; write [golden.masters] into the settings file</source>
-        <translation>keine Meisterteile genannt; [golden.masters] in die Einstellungsdatei schreiben</translation>
-    </message>
-    <message>
-        <source>log in as setter to judge</source>
-        <translation>zum Prüfen als Einrichter anmelden</translation>
-    </message>
-    <message>
-        <source>choose a master first</source>
-        <translation>erst ein Meisterteil wählen</translation>
     </message>
 </context>
 <context>
@@ -1350,26 +1346,24 @@
         <translation>Entfernen</translation>
     </message>
     <message>
-        <source>PIN, 4 to 12 digits</source>
-        <translation>PIN, 4 bis 12 Ziffern</translation>
+        <source>PIN (4 to 12 digits)</source>
+        <translation>PIN (4 bis 12 Ziffern)</translation>
+    </message>
+    <message>
+        <source>Operator: reviews. Setter: camera, service mode, masters. Quality: limits of the recipes. Administrator: users. Each level includes the levels before it.</source>
+        <translation>Bediener: Nachprüfung. Einrichter: Kamera, Service-Betrieb, Meisterteile. Qualität: Grenzwerte der Rezepte. Administrator: Benutzer. Jede Stufe umfasst die Stufen davor.</translation>
+    </message>
+    <message>
+        <source>users</source>
+        <translation>Benutzer</translation>
+    </message>
+    <message>
+        <source>Log in as administrator first.</source>
+        <translation>Zuerst als Administrator anmelden.</translation>
     </message>
     <message>
         <source>add or change</source>
         <translation>anlegen oder ändern</translation>
-    </message>
-    <message>
-        <source>operator: reviews · setter: camera, service mode, masters · quality: limits of the recipes · administrator: users.
-Each may do what the ones before may.</source>
-        <translation>Bediener: Nachprüfung · Einrichter: Kamera, Service-Betrieb, Meisterteile · Qualität: Grenzen der Rezepte · Administrator: Benutzer.
-Jede Stufe darf, was die davor dürfen.</translation>
-    </message>
-    <message>
-        <source>known users</source>
-        <translation>bekannte Benutzer</translation>
-    </message>
-    <message>
-        <source>log in as administrator first</source>
-        <translation>erst als Administrator anmelden</translation>
     </message>
     <message>
         <source>Really remove?</source>
@@ -1391,22 +1385,6 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>{kind}: Mindestlänge (mm)</translation>
     </message>
     <message>
-        <source>least brightness</source>
-        <translation>kleinste Helligkeit</translation>
-    </message>
-    <message>
-        <source>greatest dark share</source>
-        <translation>größter dunkler Anteil</translation>
-    </message>
-    <message>
-        <source>greatest saturated share</source>
-        <translation>größter übersteuerter Anteil</translation>
-    </message>
-    <message>
-        <source>least sharpness</source>
-        <translation>kleinste Schärfe</translation>
-    </message>
-    <message>
         <source>part</source>
         <translation>Teil</translation>
     </message>
@@ -1415,12 +1393,28 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Seriennummer</translation>
     </message>
     <message>
-        <source>was</source>
-        <translation>war</translation>
+        <source>minimum brightness</source>
+        <translation>Mindesthelligkeit</translation>
     </message>
     <message>
-        <source>would be</source>
-        <translation>wäre</translation>
+        <source>maximum dark fraction</source>
+        <translation>maximaler dunkler Anteil</translation>
+    </message>
+    <message>
+        <source>maximum saturated fraction</source>
+        <translation>maximaler übersteuerter Anteil</translation>
+    </message>
+    <message>
+        <source>minimum sharpness</source>
+        <translation>Mindestschärfe</translation>
+    </message>
+    <message>
+        <source>before</source>
+        <translation>vorher</translation>
+    </message>
+    <message>
+        <source>after</source>
+        <translation>nachher</translation>
     </message>
     <message>
         <source>segment</source>
@@ -1439,80 +1433,72 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Speichern</translation>
     </message>
     <message>
-        <source>reason (needed)</source>
-        <translation>Grund (nötig)</translation>
+        <source>reason (required)</source>
+        <translation>Grund (erforderlich)</translation>
     </message>
     <message>
-        <source>limits of single segments</source>
-        <translation>Grenzen einzelner Segmente</translation>
+        <source>thresholds of single segments</source>
+        <translation>Schwellen einzelner Segmente</translation>
     </message>
     <message>
-        <source>would be released (NOK → OK): possible escapes</source>
-        <translation>würden freigegeben (NOK → OK): möglicher Durchschlupf</translation>
+        <source>released parts (NOK → OK): possible escapes</source>
+        <translation>freigegebene Teile (NOK → OK): möglicher Durchschlupf</translation>
     </message>
     <message>
-        <source>would be refused (OK → NOK): possible false calls</source>
-        <translation>würden gesperrt (OK → NOK): möglicher Fehlalarm</translation>
+        <source>rejected parts (OK → NOK): possible false rejects</source>
+        <translation>zurückgewiesene Teile (OK → NOK): mögliche Pseudofehler</translation>
+    </message>
+    <message>
+        <source>Log in as quality to save.</source>
+        <translation>Zum Speichern als Qualität anmelden.</translation>
+    </message>
+    <message>
+        <source>Run the what-if before saving.</source>
+        <translation>Vor dem Speichern „Was wäre wenn?“ ausführen.</translation>
+    </message>
+    <message>
+        <source>A reason is required.</source>
+        <translation>Ein Grund ist erforderlich.</translation>
+    </message>
+    <message>
+        <source>Waiting for the engine...</source>
+        <translation>Warten auf das Prüfprogramm ...</translation>
+    </message>
+    <message>
+        <source>Judging the archive again</source>
+        <translation>Archiv wird erneut beurteilt</translation>
+    </message>
+    <message>
+        <source>{n} parts: {released} would be released, {rejected} rejected</source>
+        <translation>{n} Teile: {released} würden freigegeben, {rejected} zurückgewiesen</translation>
+    </message>
+    <message>
+        <source>{n} images of insufficient quality would now be judged; their verdict is unknown.</source>
+        <translation>{n} Bilder mit bisher ungenügender Qualität würden nun beurteilt; ihr Urteil ist unbekannt.</translation>
+    </message>
+    <message>
+        <source>The archive has no parts of this recipe, so the effect of the limits is unknown.</source>
+        <translation>Das Archiv enthält keine Teile dieses Rezepts; die Wirkung der Grenzwerte ist unbekannt.</translation>
+    </message>
+    <message>
+        <source>{n} parts were left out: judged by another model or not readable.</source>
+        <translation>{n} Teile wurden ausgelassen: von einem anderen Modell beurteilt oder nicht lesbar.</translation>
+    </message>
+    <message>
+        <source>Saved and in use.</source>
+        <translation>Gespeichert und in Gebrauch.</translation>
+    </message>
+    <message>
+        <source>Nothing was changed:</source>
+        <translation>Nichts wurde geändert:</translation>
     </message>
     <message>
         <source>limits</source>
-        <translation>Grenzen</translation>
-    </message>
-    <message>
-        <source>log in as quality to save</source>
-        <translation>zum Speichern als Qualität anmelden</translation>
-    </message>
-    <message>
-        <source>ask what if before saving</source>
-        <translation>vor dem Speichern „Was wäre wenn?“ fragen</translation>
-    </message>
-    <message>
-        <source>a reason is needed</source>
-        <translation>ein Grund ist nötig</translation>
-    </message>
-    <message>
-        <source>scoring the archive again</source>
-        <translation>Archiv wird neu bewertet</translation>
-    </message>
-    <message>
-        <source>{n} parts: {released} would be released, {refused} refused</source>
-        <translation>{n} Teile: {released} würden freigegeben, {refused} gesperrt</translation>
-    </message>
-    <message>
-        <source>{n} parts that were too poor would be judged: nobody knows how</source>
-        <translation>{n} bisher zu schlechte Bilder würden beurteilt: niemand weiß, wie</translation>
-    </message>
-    <message>
-        <source>no part of this recipe in the archive: nobody knows what the limits do</source>
-        <translation>kein Teil dieses Rezepts im Archiv: niemand weiß, was die Grenzen bewirken</translation>
-    </message>
-    <message>
-        <source>{n} parts of another model, or unreadable, were left out</source>
-        <translation>{n} Teile eines anderen Modells oder unlesbare blieben außer Betracht</translation>
-    </message>
-    <message>
-        <source>waiting for the engine</source>
-        <translation>wartet auf die Prüfung</translation>
-    </message>
-    <message>
-        <source>saved and in use</source>
-        <translation>gespeichert und in Gebrauch</translation>
-    </message>
-    <message>
-        <source>nothing was changed:</source>
-        <translation>nichts wurde geändert:</translation>
+        <translation>Grenzwerte</translation>
     </message>
 </context>
 <context>
     <name>replay</name>
-    <message>
-        <source>the newest of this station:</source>
-        <translation>die neuesten dieser Station:</translation>
-    </message>
-    <message>
-        <source>a folder or another archive:</source>
-        <translation>ein Ordner oder ein anderes Archiv:</translation>
-    </message>
     <message>
         <source>Choose…</source>
         <translation>Wählen…</translation>
@@ -1527,14 +1513,22 @@ Jede Stufe darf, was die davor dürfen.</translation>
     </message>
     <message>
         <source>Judge</source>
-        <translation>Prüfen</translation>
+        <translation>Beurteilen</translation>
     </message>
     <message>
         <source>Report…</source>
         <translation>Bericht…</translation>
     </message>
     <message>
-        <source>Flipped verdicts only</source>
+        <source>newest of this station:</source>
+        <translation>neueste dieser Station:</translation>
+    </message>
+    <message>
+        <source>folder or another archive:</source>
+        <translation>Ordner oder anderes Archiv:</translation>
+    </message>
+    <message>
+        <source>Changed verdicts only</source>
         <translation>Nur geänderte Urteile</translation>
     </message>
     <message>
@@ -1566,20 +1560,32 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Bilder</translation>
     </message>
     <message>
-        <source>log in first (page Setup)</source>
-        <translation>erst anmelden (Seite Einrichten)</translation>
+        <source>Log in first (page Setup).</source>
+        <translation>Zuerst anmelden (Seite Einrichten).</translation>
     </message>
     <message>
-        <source>the scale must be 1 to 200 µm/px</source>
-        <translation>der Maßstab muss 1 bis 200 µm/px sein</translation>
+        <source>The scale must be 1 to 200 µm/px.</source>
+        <translation>Der Maßstab muss zwischen 1 und 200 µm/px liegen.</translation>
     </message>
     <message>
-        <source>choose a folder first</source>
-        <translation>erst einen Ordner wählen</translation>
+        <source>Choose a folder first.</source>
+        <translation>Zuerst einen Ordner wählen.</translation>
     </message>
     <message>
-        <source>images are judged</source>
-        <translation>Bilder werden geprüft</translation>
+        <source>Judging images</source>
+        <translation>Bilder werden beurteilt</translation>
+    </message>
+    <message>
+        <source>not reproducible: same networks and limits give another result than on the line</source>
+        <translation>nicht reproduzierbar: gleiche Netze und Grenzwerte ergeben ein anderes Ergebnis als an der Linie</translation>
+    </message>
+    <message>
+        <source>Folder for the report</source>
+        <translation>Ordner für den Bericht</translation>
+    </message>
+    <message>
+        <source>Writing the report</source>
+        <translation>Bericht wird geschrieben</translation>
     </message>
     <message>
         <source>{n} images: {ok} OK, {nok} NOK, {error} not judged</source>
@@ -1587,23 +1593,11 @@ Jede Stufe darf, was die davor dürfen.</translation>
     </message>
     <message>
         <source>{n} compared with the line, {flips} verdicts differ</source>
-        <translation>{n} mit der Linie verglichen, {flips} Urteile anders</translation>
-    </message>
-    <message>
-        <source>differs from its record, although networks and limits are the same</source>
-        <translation>weicht von seinem Datensatz ab, obwohl Netze und Grenzen dieselben sind</translation>
+        <translation>{n} mit der Linie verglichen, {flips} Urteile weichen ab</translation>
     </message>
     <message>
         <source>and {n} more</source>
         <translation>und {n} weitere</translation>
-    </message>
-    <message>
-        <source>folder for the report</source>
-        <translation>Ordner für den Bericht</translation>
-    </message>
-    <message>
-        <source>report</source>
-        <translation>Bericht</translation>
     </message>
 </context>
 <context>
@@ -1645,7 +1639,7 @@ Jede Stufe darf, was die davor dürfen.</translation>
     </message>
     <message>
         <source>not judged</source>
-        <translation>ungeprüft</translation>
+        <translation>nicht beurteilt</translation>
     </message>
     <message>
         <source>yield</source>
@@ -1656,28 +1650,12 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>die letzten</translation>
     </message>
     <message>
-        <source>Read again</source>
-        <translation>Neu lesen</translation>
-    </message>
-    <message>
         <source>Report…</source>
         <translation>Bericht…</translation>
     </message>
     <message>
-        <source>Counters to 0</source>
-        <translation>Zähler auf 0</translation>
-    </message>
-    <message>
-        <source>the counters of the page Live and of the PLC; noted in the journal</source>
-        <translation>die Zähler der Seite Live und der SPS; wird im Journal vermerkt</translation>
-    </message>
-    <message>
         <source>reasons</source>
         <translation>Gründe</translation>
-    </message>
-    <message>
-        <source>worst score of each part</source>
-        <translation>schlechtester Wert je Teil</translation>
     </message>
     <message>
         <source>mean brightness</source>
@@ -1686,6 +1664,22 @@ Jede Stufe darf, was die davor dürfen.</translation>
     <message>
         <source>grey levels</source>
         <translation>Graustufen</translation>
+    </message>
+    <message>
+        <source>Refresh</source>
+        <translation>Aktualisieren</translation>
+    </message>
+    <message>
+        <source>Reset counters</source>
+        <translation>Zähler zurücksetzen</translation>
+    </message>
+    <message>
+        <source>Set the counters of the page Live and of the PLC to 0. The journal records it.</source>
+        <translation>Zähler der Seite Live und der SPS auf 0 setzen. Das Journal hält es fest.</translation>
+    </message>
+    <message>
+        <source>worst score of a part</source>
+        <translation>schlechtester Wert eines Teils</translation>
     </message>
     <message>
         <source>sharpness</source>
@@ -1712,24 +1706,24 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>NOK-Segmente nach Winkel</translation>
     </message>
     <message>
-        <source>log in first (page Setup)</source>
-        <translation>erst anmelden (Seite Einrichten)</translation>
+        <source>Log in first (page Setup).</source>
+        <translation>Zuerst anmelden (Seite Einrichten).</translation>
     </message>
     <message>
-        <source>reading records</source>
+        <source>Reading records</source>
         <translation>Datensätze werden gelesen</translation>
     </message>
     <message>
-        <source>no parts yet</source>
-        <translation>noch keine Teile</translation>
+        <source>No parts yet.</source>
+        <translation>Noch keine Teile.</translation>
     </message>
     <message>
-        <source>Report</source>
-        <translation>Bericht</translation>
+        <source>Report file</source>
+        <translation>Berichtsdatei</translation>
     </message>
     <message>
-        <source>report</source>
-        <translation>Bericht</translation>
+        <source>Writing the report</source>
+        <translation>Bericht wird geschrieben</translation>
     </message>
 </context>
 <context>
@@ -1763,12 +1757,12 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Wiedergabe</translation>
     </message>
     <message>
-        <source>dark or light</source>
-        <translation>dunkel oder hell</translation>
+        <source>Switch between dark and light</source>
+        <translation>Zwischen dunkel und hell wechseln</translation>
     </message>
     <message>
-        <source>keys on the screen</source>
-        <translation>Tasten auf dem Bildschirm</translation>
+        <source>Keyboard on the screen</source>
+        <translation>Bildschirmtastatur</translation>
     </message>
     <message>
         <source>SIMULATED CAMERA</source>
@@ -1779,8 +1773,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>WIEDERGABE</translation>
     </message>
     <message>
-        <source>no connection to the engine; the window reconnects automatically</source>
-        <translation>keine Verbindung zur Prüfung; das Fenster verbindet sich von selbst wieder</translation>
+        <source>No connection to the engine. Reconnecting...</source>
+        <translation>Keine Verbindung zum Prüfprogramm. Neuer Verbindungsaufbau ...</translation>
     </message>
     <message>
         <source>Log in</source>
@@ -1794,8 +1788,8 @@ Jede Stufe darf, was die davor dürfen.</translation>
         <translation>Abbrechen</translation>
     </message>
     <message>
-        <source>something is still being done: wait for it or cancel it</source>
-        <translation>es läuft noch etwas: abwarten oder abbrechen</translation>
+        <source>Another job is still running. Wait for it or cancel it.</source>
+        <translation>Es läuft noch ein anderer Auftrag. Abwarten oder abbrechen.</translation>
     </message>
 </context>
 </TS>

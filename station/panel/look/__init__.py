@@ -1,1 +1,1 @@
-"""Colours, fonts and words of the window."""
+"""Colours, fonts and translations of the window."""

@@ -1,4 +1,7 @@
-"""Translates the texts of the window. English is in the code, German in weldgate_de.ts: see `make translations`."""
+"""Translates the texts of the window: English is in the code, German in weldgate_de.ts.
+
+`make translations` brings the German up to date.
+"""
 
 from pathlib import Path
 

@@ -1,1 +1,1 @@
-"""Pages of the window, a room each."""
+"""Pages of the window, one folder for each."""

@@ -5,26 +5,26 @@ from PySide6.QtWidgets import QWidget
 
 
 class Page(QWidget):
-    """A page; made from the session, and made again whenever language or theme change."""
+    """A page, built from the session; it is built again whenever language or theme change."""
 
     def open_part(self, number: int) -> None:
-        """Show this part, on a page that shows parts of the archive."""
+        """Show this part, if the page shows recorded parts."""
 
     def close_page(self) -> None:
         """Stop timers and work; the page is not used afterwards."""
 
 
 class FollowingPage(Page):
-    """A page that reads what it shows again and again while it is visible."""
+    """A page that reads again what it shows at regular intervals while it is visible."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._timer = QTimer(self)
-        self._timer.timeout.connect(self._on_time)
+        self.timer = QTimer(self)
+        self.timer.timeout.connect(self._on_time)
 
     def follow(self, interval_ms: int) -> None:
-        """Refresh now, and at this interval from then on; called once all widgets of the page are made."""
-        self._timer.start(interval_ms)
+        """Refresh now and then at this interval; to be called once all widgets of the page are built."""
+        self.timer.start(interval_ms)
         self.refresh()
 
     def refresh(self) -> None:
@@ -33,7 +33,7 @@ class FollowingPage(Page):
 
     def close_page(self) -> None:
         """Stop refreshing."""
-        self._timer.stop()
+        self.timer.stop()
 
     def _on_time(self) -> None:
         if self.isVisible():

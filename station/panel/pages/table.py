@@ -1,4 +1,4 @@
-"""The pages of the window in the order of their buttons: key, title, and how each is made."""
+"""The pages of the window in the order of their buttons: key, title and constructor."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,13 +24,13 @@ class PageKey(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class PageInfo:
-    """One page that the window offers."""
+    """One page of the window."""
 
     key: PageKey
     title: Callable[[], str]
-    """Returns the title in the language in use."""
+    """Function that returns the title in the language in use."""
     load: Callable[[Session], Page]
-    """Imports and makes the page, when it is first shown."""
+    """Function that imports and builds the page when it is first shown."""
 
 
 def _history(session: Session) -> Page:
@@ -78,4 +78,4 @@ PAGES: tuple[PageInfo, ...] = (
     PageInfo(PageKey.SETUP, lambda: translate("window", "Setup"), _setup),
     PageInfo(PageKey.REPLAY, lambda: translate("window", "Replay"), _replay),
 )
-"""All pages; the first is shown at the start, F1 leads to the first, F2 to the second, and so on."""
+"""All pages; the first is shown at the start. F1 goes to the first page, F2 to the second, and so on."""

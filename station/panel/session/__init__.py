@@ -1,1 +1,1 @@
-"""What the window knows of the engine and of who is logged in, and how it asks."""
+"""What the window knows of the engine and of its user, and how it sends requests."""

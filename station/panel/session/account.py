@@ -36,7 +36,7 @@ class Account(QObject):
         return self._state.user
 
     def may(self, level: Level) -> bool:
-        """Return whether somebody with this level or a higher one is logged in; the engine checks it again."""
+        """Return whether a user with at least this level is logged in; the engine checks it again."""
         return self._state.may(level)
 
     def ask(self, request: Request, then: Then, owner: QObject | None = None) -> None:
@@ -44,7 +44,7 @@ class Account(QObject):
         self._requests.ask(request, self._state.token, then, owner)
 
     def log_in(self, name: str, pin: str, then: Then, owner: QObject | None = None) -> None:
-        """Ask for a login. It lasts until logout, another login, or until the window is not used for a while."""
+        """Ask for a login; it lasts until logout, another login, or a time without use of the window."""
         reply = guarded(then, owner)
 
         def answered(answer: Answer) -> None:

@@ -1,4 +1,4 @@
-"""Turns what comes over the engine's channel into Qt signals; polls on the window's own thread and never waits."""
+"""Turns what comes over the engine's channel into Qt signals; polls on the window's thread, never waits."""
 
 from PySide6.QtCore import QObject, QTimer, Signal
 

@@ -119,7 +119,7 @@ def _fade(age_s: float) -> float:
 
 
 def foot(part: PartEvent | None, now_s: float) -> str:
-    """Return the line below the lamp: serial or number of the part, and its age; `now_s` is monotonic time."""
+    """Return the line below the lamp: serial or number of the part, and its age; `now_s` is monotonic."""
     if part is None:
         return ""
     return f"{part.record.serial or part.record.inspection_id} · {_ago(now_s - part.at_s)}"

@@ -15,7 +15,7 @@ class LoginState:
         self._touched = False
 
     def may(self, level: Level) -> bool:
-        """Return whether somebody with this level or a higher one is logged in; the engine checks it again."""
+        """Return whether a user with at least this level is logged in; the engine checks it again."""
         return self.user is not None and self.user.level >= level
 
     def begin(self, answer: Answer) -> bool:

@@ -26,8 +26,8 @@ class _Waiting:
 class Pending:
     """Knows who waits for which answer; times are monotonic.
 
-    A busy engine answers late: as long as its events come, requests wait. An answer may take even longer while
-    others come.
+    A busy engine answers late: as long as its events come, requests wait. An answer may take even longer
+    while others come.
     """
 
     def __init__(self) -> None:
@@ -56,7 +56,7 @@ class Pending:
         return None if waiting is None else waiting.then
 
     def lost(self, now_s: float) -> list[int]:
-        """Return the numbers of the requests that will not be answered: the engine is gone, or answers nothing."""
+        """Return the numbers of the requests that will not be answered any more."""
         return [number for number, waiting in self._waiting.items() if self._is_lost(waiting, now_s)]
 
     def _is_lost(self, waiting: _Waiting, now_s: float) -> bool:

@@ -151,5 +151,5 @@ class Received(QObject):
 
 
 def shows(preview: Preview | None, part: PartEvent) -> bool:
-    """Return whether an image is of that part; parts that could not be recorded have no number of their own."""
+    """Return whether an image is of that part; a part that could not be recorded has number 0."""
     return preview is not None and preview.inspection_id == part.record.inspection_id > 0

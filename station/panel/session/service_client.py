@@ -34,7 +34,7 @@ class ServiceClient(QObject):
         return self._held
 
     def hold(self, request: HoldService) -> None:
-        """Ask for service mode, or for other setup images or another bit in it; `changed` or `refused` follows."""
+        """Ask for service mode, or for other settings of it; `changed` or `refused` follows."""
         self._account.ask(request, partial(self._on_answer, request))
 
     def adjust(self, exposure_us: float, gain_db: float) -> None:

@@ -1,4 +1,4 @@
-"""Small parts that all pages are made of."""
+"""Small widgets that all pages are built from."""
 
 from collections.abc import Sequence
 
@@ -21,11 +21,11 @@ from PySide6.QtWidgets import (
 )
 
 TOUCH_PX = 44
-"""Least height of what is touched."""
+"""Minimum height of what is touched."""
 
 
 def label(text: str, name: str = "", wrap: bool = False) -> QLabel:
-    """A label in one of the style sheet's kinds."""
+    """Return a label; `name` is one of the style sheet's kinds of label."""
     made = QLabel(text)
     made.setObjectName(name)
     made.setWordWrap(wrap)
@@ -33,10 +33,10 @@ def label(text: str, name: str = "", wrap: bool = False) -> QLabel:
 
 
 class Facts(QFrame):
-    """Names with their values in a card."""
+    """A card with names and their values."""
 
     def __init__(self, names: dict[str, str], columns: int = 1, big: Sequence[str] = ()) -> None:
-        """`names`: key and what stands before the value."""
+        """`names` are the labels by key; the values of the keys in `big` are shown larger."""
         super().__init__()
         self.setObjectName("card")
         grid = QGridLayout(self)
@@ -51,13 +51,13 @@ class Facts(QFrame):
             grid.setColumnStretch(column + 1, 1)
 
     def set(self, **values: object) -> None:
-        """Texts of some keys."""
+        """Set the values of some keys."""
         for key, value in values.items():
             self.values[key].setText(str(value))
 
 
 def titled(title: str, inside: QWidget) -> QFrame:
-    """A card with a title."""
+    """Return a card with a title."""
     card = QFrame()
     card.setObjectName("card")
     if type(inside) is QWidget:
@@ -70,7 +70,7 @@ def titled(title: str, inside: QWidget) -> QFrame:
 
 
 def scrolled(page: QWidget) -> QScrollArea:
-    """A page that may be larger than its place."""
+    """Return a scroll area around a page that may be larger than its place."""
     area = QScrollArea()
     area.setWidgetResizable(True)
     area.setWidget(page)
@@ -79,12 +79,12 @@ def scrolled(page: QWidget) -> QScrollArea:
 
 
 def by_finger(area: QAbstractScrollArea) -> None:
-    """A finger moves what is in it."""
+    """Let a finger scroll an area."""
     QScroller.grabGesture(area.viewport(), QScroller.ScrollerGestureType.TouchGesture)
 
 
 class Choice(QComboBox):
-    """A combo box whose entries can be hit with gloves."""
+    """A combo box whose entries can be touched with gloves."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -92,7 +92,7 @@ class Choice(QComboBox):
 
 
 class Table(QTableWidget):
-    """Rows of text to read and choose from."""
+    """A table of texts in which one row can be chosen."""
 
     def __init__(self, heads: Sequence[str], stretch: int = -1) -> None:
         super().__init__(0, len(heads))
@@ -113,15 +113,15 @@ class Table(QTableWidget):
         header.setSectionResizeMode(stretch % len(heads), QHeaderView.ResizeMode.Stretch)
 
     def fill(self, rows: Sequence[Sequence[str]], keys: Sequence[object] = ()) -> None:
-        """All rows anew; with a key for each row the chosen one stays chosen, wherever it is now."""
+        """Show other rows; if each has a key, the chosen row stays chosen wherever it is now."""
         chosen = self.chosen() if keys else None
         self._keys = list(keys)
         self.setRowCount(len(rows))
-        for r, row in enumerate(rows):
-            for c, text in enumerate(row):
-                item = self.item(r, c)
+        for index, row in enumerate(rows):
+            for column, text in enumerate(row):
+                item = self.item(index, column)
                 if item is None:
-                    self.setItem(r, c, QTableWidgetItem(text))
+                    self.setItem(index, column, QTableWidgetItem(text))
                 elif item.text() != text:
                     item.setText(text)
         if chosen is not None and chosen in self._keys:
@@ -131,12 +131,12 @@ class Table(QTableWidget):
             self.clearSelection()
 
     def chosen(self) -> object | None:
-        """Key of the chosen row."""
+        """Return the key of the chosen row, or None."""
         return self._keys[self.currentRow()] if 0 <= self.currentRow() < len(self._keys) else None
 
     def texts(self) -> list[list[str]]:
-        """What stands in it."""
-        cells = range(self.columnCount())
+        """Return the texts of all rows."""
         return [
-            [item.text() if (item := self.item(r, c)) else "" for c in cells] for r in range(self.rowCount())
+            [item.text() if (item := self.item(row, column)) else "" for column in range(self.columnCount())]
+            for row in range(self.rowCount())
         ]

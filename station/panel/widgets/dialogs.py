@@ -1,4 +1,7 @@
-"""Where to read from and write to. Nothing can be renamed or deleted there, and nothing comes of it once nobody is logged in any more."""
+"""Dialogs that ask for a folder or a file.
+
+Nothing can be renamed or deleted in them, and their answer is dropped if the user was logged out meanwhile.
+"""
 
 from pathlib import Path
 
@@ -9,13 +12,16 @@ from station.panel.session.session import Session
 
 
 def ask_folder(parent: QWidget, session: Session, title: str) -> Path | None:
-    """A folder, or None."""
+    """Return a folder, or None if none was chosen."""
     name = QFileDialog.getExistingDirectory(parent, title, options=QFileDialog.Option.ReadOnly)
     return Path(name) if name and session.account.may(Level.OPERATOR) else None
 
 
 def ask_file(parent: QWidget, session: Session, title: str, suggestion: str) -> Path | None:
-    """A file to write, with the suggestion's ending, or None; the dialog has asked whether one that exists may be replaced."""
+    """Return a file to write, or None if none was chosen.
+
+    The file has the suffix of `suggestion`; the dialog has asked whether an existing file may be replaced.
+    """
     dialog = QFileDialog(parent, title)
     dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
     dialog.setOption(QFileDialog.Option.ReadOnly)

@@ -1,34 +1,39 @@
-"""A number to be set: refused at the field if it is none or out of range, and the range is named."""
+"""Fields for numbers, which show their range and refuse what is not a number in it."""
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QGridLayout, QLineEdit, QWidget
 
+from station.domain import SEGMENTS
 from station.panel.look.words import translate
 from station.panel.widgets.card import label
 
+LOW, HIGH = 0.01, 0.99
+"""Range of a threshold."""
+
 
 class NumberField(QWidget):
-    """Text field with its range and what is wrong behind it."""
+    """A text field for one number, followed by its range."""
 
     changed = Signal()
+    """Emitted when the text has changed."""
 
     def __init__(self, low: float, high: float, unit: str = "") -> None:
         super().__init__()
         self._low, self._high = low, high
-        self.edit, self._said = QLineEdit(), label("", "quiet")
+        self.edit, self._note = QLineEdit(), label("", "quiet")
         self.edit.setFixedWidth(110)
         self._range = f"{low:.7g} … {high:.7g} {unit}".strip()
         row = QGridLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.edit, 0, 0)
-        row.addWidget(self._said, 0, 1)
+        row.addWidget(self._note, 0, 1)
         row.setColumnStretch(1, 1)
-        self.edit.textChanged.connect(self._look)
-        self._look()
+        self.edit.textChanged.connect(self._on_changed)
+        self._on_changed()
 
     @property
     def value(self) -> float | None:
-        """None: not a number in the range."""
+        """Number in the field, or None if it is not a number in the range."""
         try:
             number = float(self.edit.text().replace(",", "."))
         except ValueError:
@@ -37,42 +42,43 @@ class NumberField(QWidget):
 
     @property
     def problem(self) -> str:
-        """What stands behind the field if the value is refused."""
-        return "" if self.value is not None else self._said.text()
+        """Text after the field if the value is refused, or empty."""
+        return "" if self.value is not None else self._note.text()
 
     def set(self, value: float) -> None:
-        """Show a number."""
+        """Put a number into the field."""
         self.edit.setText(f"{value:.6g}")
 
-    def _look(self) -> None:
-        good = self.value is not None
-        self._said.setObjectName("quiet" if good else "problem")
-        self._said.setText(self._range if good else translate("field", "allowed: ") + self._range)
-        self._said.style().unpolish(self._said)
-        self._said.style().polish(self._said)
+    def _on_changed(self) -> None:
+        allowed = self.value is not None
+        self._note.setObjectName("quiet" if allowed else "problem")
+        self._note.setText(self._range if allowed else translate("field", "allowed: ") + self._range)
+        self._note.style().unpolish(self._note)
+        self._note.style().polish(self._note)
         self.changed.emit()
 
 
 class SegmentLimits(QWidget):
-    """Limits of single segments as text: 1: 0.6, 12: 0.3."""
+    """A text field for thresholds of single segments, such as 1: 0.6, 12: 0.3."""
 
     changed = Signal()
+    """Emitted when the text has changed."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.edit, self._said = QLineEdit(), label("", "problem")
+        self.edit, self._note = QLineEdit(), label("", "problem")
         self.edit.setPlaceholderText("1: 0.6, 12: 0.3")
         self.edit.setMaximumWidth(220)
         row = QGridLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.edit, 0, 0)
-        row.addWidget(self._said, 1, 0)
-        self._said.hide()
-        self.edit.textChanged.connect(self._look)
+        row.addWidget(self._note, 1, 0)
+        self._note.hide()
+        self.edit.textChanged.connect(self._on_changed)
 
     @property
     def value(self) -> dict[int, float] | None:
-        """By number, 1 to 21; None: not to be read, or not allowed."""
+        """Thresholds by number of the segment, 1 to 21, or None if the text is not valid."""
         found: dict[int, float] = {}
         for part in filter(None, (text.strip() for text in self.edit.text().replace(";", ",").split(","))):
             number, _, limit = part.partition(":")
@@ -80,13 +86,17 @@ class SegmentLimits(QWidget):
                 found[int(number)] = float(limit)
             except ValueError:
                 return None
-        return found if all(1 <= n <= 21 and 0.01 <= limit <= 0.99 for n, limit in found.items()) else None
+        return found if all(_allowed(number, limit) for number, limit in found.items()) else None
 
     def set(self, limits: dict[int, float]) -> None:
-        """Show limits."""
+        """Put thresholds into the field."""
         self.edit.setText(", ".join(f"{number}: {limit:g}" for number, limit in sorted(limits.items())))
 
-    def _look(self) -> None:
-        self._said.setText(translate("field", "allowed: ") + "1 … 21: 0.01 … 0.99")
-        self._said.setVisible(self.value is None)
+    def _on_changed(self) -> None:
+        self._note.setText(translate("field", "allowed: ") + f"1 … {SEGMENTS}: {LOW:g} … {HIGH:g}")
+        self._note.setVisible(self.value is None)
         self.changed.emit()
+
+
+def _allowed(number: int, limit: float) -> bool:
+    return 1 <= number <= SEGMENTS and LOW <= limit <= HIGH

@@ -1,4 +1,4 @@
-"""Keys on the screen, for who has none at hand: they write where the cursor stands."""
+"""A keyboard on the screen, which types where the cursor is."""
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QKeyEvent
@@ -11,11 +11,11 @@ ROWS = {
     "de": ("1234567890ß", "qwertzuiopü", "asdfghjklöä", "yxcvbnm,.-:"),
 }
 SHIFT, BACK, SPACE, ENTER = "⇧", "⌫", "␣", "↵"
-CODES = {BACK: Qt.Key.Key_Backspace, ENTER: Qt.Key.Key_Return, SPACE: Qt.Key.Key_Space}
+CODES: dict[str, Qt.Key] = {BACK: Qt.Key.Key_Backspace, ENTER: Qt.Key.Key_Return, SPACE: Qt.Key.Key_Space}
 
 
 class Keys(QWidget):
-    """Never takes the focus itself."""
+    """Shows the keys of the language in use; never takes the focus."""
 
     def __init__(self) -> None:
         super().__init__()

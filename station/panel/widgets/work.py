@@ -10,9 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QW
 
 from station.errors import WeldgateError
 from station.panel.look.words import translate
-
-Progress = Callable[[int, int], bool]
-"""Function that the work calls with how much is done of how much; returns False if the work was cancelled."""
+from station.panel.widgets.progress import Progress
 
 Result = TypeVar("Result")
 Work = Callable[[Progress], Result | None]
@@ -48,12 +46,12 @@ class WorkBar(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._bar, self._label = QProgressBar(), QLabel()
-        self._cancel = QPushButton(translate("work", "Cancel"))
-        self._cancel.clicked.connect(self.cancel)
+        self.bar, self._label = QProgressBar(), QLabel()
+        self.cancel_button = QPushButton(translate("work", "Cancel"))
+        self.cancel_button.clicked.connect(self.cancel)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        for widget, stretch in ((self._label, 0), (self._bar, 1), (self._cancel, 0)):
+        for widget, stretch in ((self._label, 0), (self.bar, 1), (self.cancel_button, 0)):
             row.addWidget(widget, stretch)
         self._job: _Job | None = None
         self._moved.connect(self._on_moved)
@@ -68,11 +66,11 @@ class WorkBar(QWidget):
     def start(self, title: str, work: Work[Result], then: Callable[[Result], object]) -> bool:
         """Run `work` on a thread of its own and hand its result to `then` on this one.
 
-        `then` is not called if the work failed or was cancelled. Returns False, and emits `failed`, if another
+        `then` is not called if the work failed or was cancelled. Return False, and emit `failed`, if another
         job is running.
         """
         if self._job is not None:
-            self.failed.emit(translate("work", "something is still being done: wait for it or cancel it"))
+            self.failed.emit(translate("work", "Another job is still running. Wait for it or cancel it."))
             return False
         outcome = _Outcome[Result]()
 
@@ -82,8 +80,8 @@ class WorkBar(QWidget):
             elif outcome.result is not None and not job.cancelled.is_set():
                 then(outcome.result)
 
-        def progress(done: int, of: int) -> bool:
-            self._moved.emit(done, of)
+        def progress(done: int, total: int) -> bool:
+            self._moved.emit(done, total)
             return not job.cancelled.is_set()
 
         def run() -> None:
@@ -98,7 +96,7 @@ class WorkBar(QWidget):
 
         self._job = job = _Job(threading.Thread(target=run, name="work", daemon=True), finish)
         self._label.setText(title)
-        self._bar.setRange(0, 0)
+        self.bar.setRange(0, 0)
         self.show()
         job.thread.start()
         return True
@@ -119,9 +117,9 @@ class WorkBar(QWidget):
             job.cancelled.set()
             job.thread.join(timeout=1)
 
-    def _on_moved(self, done: int, of: int) -> None:
-        self._bar.setRange(0, of)
-        self._bar.setValue(done)
+    def _on_moved(self, done: int, total: int) -> None:
+        self.bar.setRange(0, total)
+        self.bar.setValue(done)
 
     def _on_ended(self, job: _Job) -> None:
         if job is not self._job:

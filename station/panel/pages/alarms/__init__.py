@@ -1,1 +1,1 @@
-"""What is wrong, why, and what to do."""
+"""The page Alarms: what is wrong, why, and what to do."""

@@ -1,4 +1,4 @@
-"""Shows the alarms of the journal: code, cause, what to do, when, acknowledged by whom."""
+"""The page Alarms: each alarm with code, cause, what to do, when it was active, and who acknowledged it."""
 
 from datetime import datetime
 
@@ -14,11 +14,14 @@ from station.panel.widgets.card import Table, label, titled
 from station.plc.map.alarms import TEXTS
 
 SHOWN = 200
+"""Maximum number of alarms that are shown, the newest."""
+LASTING = 0x3000
+"""Smallest code of an alarm that is active until it is cleared; others are single events."""
 REFRESH_MS = 2000
 
 
 class AlarmsPage(FollowingPage):
-    """Follows the alarms in the journal."""
+    """Shows the alarms of the journal and follows it."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -33,7 +36,7 @@ class AlarmsPage(FollowingPage):
         )
         self.table = Table(heads, stretch=2)
         self._actions: dict[object, str] = {}
-        """By the entry's number."""
+        """What to do, by number of the alarm's entry in the journal."""
         self.action = label("", "fact", wrap=True)
         self.action.setMinimumHeight(44)
         self.table.itemSelectionChanged.connect(self._on_chosen)
@@ -43,7 +46,8 @@ class AlarmsPage(FollowingPage):
         row = QHBoxLayout()
         row.addWidget(
             label(
-                translate("alarms", "Choose an alarm to acknowledge it; who is logged in is noted."), "quiet"
+                translate("alarms", "Choose an alarm and acknowledge it. The journal records who did."),
+                "quiet",
             )
         )
         row.addWidget(self._problem)
@@ -56,24 +60,24 @@ class AlarmsPage(FollowingPage):
         self.follow(REFRESH_MS)
 
     def refresh(self) -> None:
-        """Read the journal again."""
+        """Read the journal again and show its alarms."""
         try:
-            told = entries(
+            found = entries(
                 self._session.received.folder, (Kind.ALARM, Kind.ALARM_OVER, Kind.ALARM_SEEN), limit=3 * SHOWN
             )
         except RecordError as error:
             self._problem.setText(str(error))
             return
-        over: dict[str, str] = {}
-        seen = {e.subject: e.who for e in told if e.kind is Kind.ALARM_SEEN}
+        cleared: dict[str, str] = {}
+        acknowledged = {entry.subject: entry.who for entry in found if entry.kind is Kind.ALARM_SEEN}
         rows, numbers, self._actions = [], [], {}
-        for entry in told:  # the newest first
+        for entry in found:  # the newest first
             if entry.kind is Kind.ALARM_OVER:
-                over[entry.subject] = entry.at
+                cleared[entry.subject] = entry.at
             elif entry.kind is Kind.ALARM:
                 code = int(entry.subject.removeprefix("16#"), 16)
-                lasts = code >= 0x3000
-                until = over.pop(entry.subject, "") if lasts else entry.at
+                lasts = code >= LASTING
+                until = cleared.pop(entry.subject, "") if lasts else entry.at
                 text = TEXTS.get(code)
                 cause = data(text.cause) if text else entry.subject
                 cause += f" ({entry.after})" if entry.after else ""
@@ -83,8 +87,8 @@ class AlarmsPage(FollowingPage):
                         entry.subject,
                         cause,
                         _local(entry.at),
-                        (_local(until) if lasts else "") if until else translate("alarms", "lasts"),
-                        seen.get(str(entry.number), ""),
+                        (_local(until) if lasts else "") if until else translate("alarms", "active"),
+                        acknowledged.get(str(entry.number), ""),
                     )
                 )
                 numbers.append(entry.number)
@@ -99,9 +103,9 @@ class AlarmsPage(FollowingPage):
     def _acknowledge(self) -> None:
         number, user = self.table.chosen(), self._session.account.user
         if user is None:
-            self._problem.setText(translate("alarms", "log in first (page Setup)"))
+            self._problem.setText(translate("alarms", "Log in first (page Setup)."))
         elif number is None:
-            self._problem.setText(translate("alarms", "choose an alarm first"))
+            self._problem.setText(translate("alarms", "Choose an alarm first."))
         else:
             self.acknowledge.setEnabled(False)
             self._session.account.ask(Acknowledge(int(str(number))), self._on_answer, self)

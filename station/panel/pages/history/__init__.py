@@ -1,1 +1,1 @@
-"""Past parts: filmstrip, search, one record with all that led to its verdict, review."""
+"""The page History: search, filmstrip, one record in full, review, exports."""

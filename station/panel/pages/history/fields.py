@@ -1,4 +1,4 @@
-"""What is looked for among the past parts."""
+"""The fields by which recorded parts are searched."""
 
 from datetime import UTC, datetime
 from pathlib import Path
@@ -23,24 +23,26 @@ from station.panel.pages.history.search import TO_CONFIRM, Search
 from station.panel.widgets.card import Choice, label
 
 BETWEEN = -1
+"""Stands for "from ... to ..." among the hours to choose from."""
 
 
 class SearchFields(QWidget):
-    """Serial, time, verdict, reason, segment, score, state of the reviews."""
+    """Fields for serial, time, verdict, reason, segment, score and state of the review."""
 
     asked = Signal()
+    """Emitted when parts are to be searched."""
 
     def __init__(self) -> None:
         super().__init__()
         self.serial = QLineEdit()
-        self.serial.setPlaceholderText(translate("history", "serial, or its beginning with *"))
+        self.serial.setPlaceholderText(translate("history", "serial, or prefix and *"))
         self.serial.setMinimumWidth(120)
         self.since, self.verdict, self.kind, self.segment, self.score, self.state = (
             Choice() for _ in range(6)
         )
         self._boxes = (self.since, self.verdict, self.kind, self.segment, self.score, self.state)
         self._fill()
-        self.look_up = QPushButton(translate("history", "Search"))
+        self.start = QPushButton(translate("history", "Search"))
         now = QDateTime.currentDateTime()
         self.begin, self.end = QDateTimeEdit(now.addDays(-1)), QDateTimeEdit(now.addSecs(60))
         self._between = QWidget()
@@ -64,12 +66,12 @@ class SearchFields(QWidget):
             box.setMinimumContentsLength(8 if box is self.state else 6)
             box.currentIndexChanged.connect(self._on_chosen)
             top.addWidget(box)
-        top.addWidget(self.look_up)
+        top.addWidget(self.start)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.addLayout(top)
         rows.addWidget(self._between)
-        self.look_up.clicked.connect(self.asked)
+        self.start.clicked.connect(self.asked)
         self.serial.returnPressed.connect(self.asked)
 
     def _fill(self) -> None:
@@ -94,7 +96,7 @@ class SearchFields(QWidget):
             (
                 self.segment,
                 translate("history", "segment"),
-                [(f"{segment} {n}", n) for n in range(1, SEGMENTS + 1)],
+                [(f"{segment} {number}", number) for number in range(1, SEGMENTS + 1)],
             ),
             (
                 self.score,
@@ -116,7 +118,7 @@ class SearchFields(QWidget):
                 box.addItem(text, value)
 
     def clear(self) -> None:
-        """Look for nothing in particular."""
+        """Set all fields back, so that every part is found."""
         self.serial.clear()
         for box in self._boxes:
             with QSignalBlocker(box):
@@ -127,8 +129,8 @@ class SearchFields(QWidget):
         self._between.setVisible(self.since.currentData() == BETWEEN)
         self.asked.emit()
 
-    def asked_for(self) -> Search:
-        """Return what the fields say."""
+    def asked_search(self) -> Search:
+        """Return the search that the fields describe."""
         hours = self.since.currentData()
         between = hours == BETWEEN
         return Search(
@@ -144,8 +146,8 @@ class SearchFields(QWidget):
         )
 
     def search(self, folder: Path) -> tuple[list[Row], dict[int, Review]]:
-        """Return the newest 300 of the parts looked for, and all reviews. Raises RecordError."""
-        return self.asked_for().run(folder, datetime.now(UTC))
+        """Return the newest `FOUND` parts that match, and all reviews. Raises RecordError."""
+        return self.asked_search().run(folder, datetime.now(UTC))
 
 
 def _utc(edit: QDateTimeEdit) -> datetime:

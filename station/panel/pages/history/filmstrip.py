@@ -1,4 +1,4 @@
-"""A list of parts: picture in small, symbol, number, serial, time. The symbol says the verdict, its colour too."""
+"""A list of parts with thumbnail, verdict (as symbol and colour), number, serial and time."""
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -19,11 +19,12 @@ ICON_PX = 72
 
 
 class Filmstrip(QListWidget):
-    """One item a part; the row is kept in it."""
+    """Shows one item for each part, as a list or as a gallery."""
 
     def __init__(self) -> None:
         super().__init__()
         self.rows: dict[int, Row] = {}
+        """Rows of the index by number of the part, in the order of the list."""
         self.setIconSize(QSize(ICON_PX, ICON_PX))
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setUniformItemSizes(True)
@@ -31,7 +32,7 @@ class Filmstrip(QListWidget):
         self.as_gallery(False)
 
     def as_gallery(self, gallery: bool) -> None:
-        """Pictures side by side, or a list with words."""
+        """Show images side by side, or a list with texts."""
         self.setViewMode(QListView.ViewMode.IconMode if gallery else QListView.ViewMode.ListMode)
         self.setResizeMode(QListView.ResizeMode.Adjust)
         self.setMovement(QListView.Movement.Static)
@@ -39,7 +40,7 @@ class Filmstrip(QListWidget):
         self.setWordWrap(gallery)
 
     def fill(self, rows: Sequence[Row], thumbs: Mapping[int, QImage], reviews: Mapping[int, Review]) -> None:
-        """Parts in this order; the chosen one stays chosen if it is there."""
+        """Show parts in this order; the chosen one stays chosen if it is among them."""
         chosen = self.chosen()
         self.blockSignals(True)
         self.clear()
@@ -51,9 +52,9 @@ class Filmstrip(QListWidget):
             reason = data(row.reason) if row.reason else ""
             purpose = "" if row.purpose == "part" else f" · {data(row.purpose)}"
             text = f"{row.inspection_id}{mark}  {row.serial}\n{when:%d.%m. %H:%M:%S}{purpose}\n{reason}"
-            picture, icon = tile(row.verdict, thumbs.get(row.inspection_id)), QIcon()
+            pixmap, icon = tile(row.verdict, thumbs.get(row.inspection_id)), QIcon()
             for mode in (QIcon.Mode.Normal, QIcon.Mode.Selected):
-                icon.addPixmap(picture, mode)
+                icon.addPixmap(pixmap, mode)
             item = QListWidgetItem(icon, text)
             item.setData(Qt.ItemDataRole.UserRole, row.inspection_id)
             self.addItem(item)
@@ -62,17 +63,21 @@ class Filmstrip(QListWidget):
         self.blockSignals(False)
 
     def chosen(self) -> int | None:
-        """Number of the chosen part."""
+        """Return the number of the chosen part, or None."""
         item = self.currentItem()
         return None if item is None else int(item.data(Qt.ItemDataRole.UserRole))
 
 
 def tile(verdict: str, thumb: QImage | None) -> QPixmap:
-    """Picture with the verdict's symbol in its corner; a plain tile if there is no picture. Green is for a fresh OK alone."""
-    c = theme.colors()
-    color, on = {"OK": (c.raised, c.text), "NOK": (c.bad, c.on_bad)}.get(verdict, (c.warn, c.on_color))
+    """Return a thumbnail with the verdict's symbol in its corner, or a plain tile if there is no image.
+
+    OK is not green here: green means a fresh OK.
+    """
+    colors = theme.colors()
+    known = {"OK": (colors.raised, colors.text), "NOK": (colors.bad, colors.on_bad)}
+    color, text_color = known.get(verdict, (colors.warn, colors.on_color))
     pixmap = QPixmap(ICON_PX, ICON_PX)
-    pixmap.fill(QColor(c.picture))
+    pixmap.fill(QColor(colors.behind_image))
     painter = QPainter(pixmap)
     corner = QRectF(ICON_PX - 26, ICON_PX - 26, 26, 26)
     if thumb is not None and not thumb.isNull():
@@ -84,7 +89,7 @@ def tile(verdict: str, thumb: QImage | None) -> QPixmap:
     font.setPixelSize(int(corner.height() * 0.75))
     font.setBold(True)
     painter.setFont(font)
-    painter.setPen(QColor(on))
+    painter.setPen(QColor(text_color))
     painter.drawText(corner, Qt.AlignmentFlag.AlignCenter, SYMBOLS.get(verdict, "?"))
     painter.end()
     return pixmap

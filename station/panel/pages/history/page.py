@@ -1,65 +1,64 @@
-"""Past parts: the last 300 or what is searched for, one of them opened, reviewed, exported."""
+"""The page History: finds recorded parts, shows one of them with its record, takes reviews and exports."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
 
-from station.analysis.export import export
-from station.archive.reader import Listed, Row, Wanted, find, read_records
+from station.archive.reader import Row, Wanted, find
 from station.channel.requests import Answer, GiveReview
-from station.domain import Verdict
 from station.errors import RecordError
-from station.files.durable import replacing
-from station.journal.reviews import Opinion, Review, State, possible, reviews
+from station.journal.reviews import Opinion, Review, reviews
 from station.panel.look.words import data, translate
+from station.panel.pages.history.export_bar import ExportBar
 from station.panel.pages.history.fields import SearchFields
 from station.panel.pages.history.filmstrip import Filmstrip
 from station.panel.pages.history.record_view import RecordView
+from station.panel.pages.history.review_bar import ReviewBar
 from station.panel.pages.history.search import FOUND
 from station.panel.pages.page import Page
 from station.panel.session.session import Session
 from station.panel.widgets.card import label
-from station.panel.widgets.dialogs import ask_file, ask_folder
-from station.panel.widgets.weld.kept import defect_map, small_pictures
-from station.panel.widgets.work import Progress, WorkBar
+from station.panel.widgets.weld.recorded import defect_map, thumbnails
+from station.panel.widgets.work import WorkBar
 
 REFRESH_MS = 1000
 GALLERY = 60
-"""Pictures read for a gallery."""
+"""Maximum number of images that are read for the gallery."""
 
 
 class HistoryPage(Page):
-    """Reads the archive; the engine need not run."""
+    """Reads the archive; works without a running engine, except for reviews."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self.film, self.record = Filmstrip(), RecordView()
-        self._seen = 0
+        self.film, self.record, self.reviewing, self.work = Filmstrip(), RecordView(), ReviewBar(), WorkBar()
+        self.exports = ExportBar(session, self.work, lambda: list(self.film.rows))
+        self._newest = 0
         """Number of the newest part at the last search."""
-        self._pictures: dict[int, QImage] = {}
-        """Read for the gallery."""
-        self._waiting = False
-        """Whether the engine has not yet answered to a review."""
+        self._thumbs: dict[int, QImage] = {}
+        """Images that were read for the gallery, by number of the part."""
+        self.waiting = False
+        """True while the engine has not answered to a review."""
         self._review: Review | None = None
-        """Of the chosen part."""
+        """Review of the chosen part."""
         self._lay_out()
-        self.film.currentItemChanged.connect(self._on_chosen)
-        self.record.marked.connect(self._look)
+        self.film.currentItemChanged.connect(self.show_chosen)
+        self.record.marked.connect(self._refresh_buttons)
+        self.reviewing.given.connect(self.give_review)
         self.gallery.toggled.connect(self._on_gallery)
         self.fields.asked.connect(self.search)
-        self._work.failed.connect(lambda why: self._problem.setText(data(why)))
-        session.account.changed.connect(self.comment.clear)
+        self.work.failed.connect(lambda why: self._problem.setText(data(why)))
+        session.account.changed.connect(self.reviewing.comment.clear)
         session.account.changed.connect(self.record.clear_marks)
-        session.account.changed.connect(self._on_user)
+        session.account.changed.connect(self._read_review)
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._follow)
         self._timer.start(REFRESH_MS)
         self.search()
-        self._on_user()
+        self._read_review()
 
     def _lay_out(self) -> None:
         self.fields, self.gallery = SearchFields(), QPushButton(translate("history", "Gallery"))
@@ -67,51 +66,34 @@ class HistoryPage(Page):
         top = QHBoxLayout()
         top.addWidget(self.fields, 1)
         top.addWidget(self.gallery, 0, Qt.AlignmentFlag.AlignTop)
-        self._count, self._said = label("", "quiet"), label("", "quiet", wrap=True)
-        self._problem, self._work = label("", "problem", wrap=True), WorkBar()
+        self._count, self._problem = label("", "quiet"), label("", "problem", wrap=True)
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.film, 1)
         column.addWidget(self._count)
-        column.addWidget(self._said)
+        column.addWidget(self.exports.result)
         split = QSplitter(Qt.Orientation.Horizontal)
         split.addWidget(left)
         split.addWidget(self.record)
         split.setSizes([310, 780])
         split.setStretchFactor(1, 1)
-        self.comment = QLineEdit()
-        self.comment.setPlaceholderText(translate("history", "comment"))
-        self._reviewed = label("", "fact")
-        self.opinions = {
-            Opinion.RIGHT: QPushButton(translate("history", "Verdict is right")),
-            Opinion.FALSE_CALL: QPushButton(translate("history", "False call")),
-            Opinion.MISSED: QPushButton(translate("history", "Missed defect")),
-        }
         self.show_map = QPushButton(translate("history", "Defect map"))
         self.show_map.clicked.connect(self._ask_map)
-        self.list = QPushButton(translate("history", "Table…"))
-        self.list.setToolTip(translate("history", "the parts that were found, as CSV"))
-        self.list.clicked.connect(self._ask_list)
-        self.export = QPushButton(translate("history", "Export reviewed…"))
         bottom = QHBoxLayout()
-        bottom.addWidget(self.comment, 1)
-        for opinion, button in self.opinions.items():
-            button.clicked.connect(lambda _=False, o=opinion: self.say(o))
-            bottom.addWidget(button)
-        self.export.clicked.connect(self._ask_export)
-        for button in (self.show_map, self.list, self.export):
-            bottom.addWidget(button)
+        bottom.addWidget(self.reviewing, 1)
+        bottom.addWidget(self.show_map)
+        bottom.addWidget(self.exports)
         rows = QVBoxLayout(self)
         rows.addLayout(top)
         rows.addWidget(split, 1)
-        rows.addWidget(self._reviewed)
+        rows.addWidget(self.reviewing.state)
         rows.addLayout(bottom)
-        rows.addWidget(self._work)
+        rows.addWidget(self.work)
         rows.addWidget(self._problem)
 
     def search(self) -> None:
-        """Read the index."""
+        """Search the index by the fields and show what is found."""
         try:
             rows, known = self.fields.search(self._session.received.folder)
         except RecordError as error:
@@ -120,20 +102,21 @@ class HistoryPage(Page):
         else:
             self._problem.setText("")
         last = self._session.received.last
-        self._seen = 0 if last is None else last.record.inspection_id
-        self._pictures = {row.inspection_id: self._pictures[row.inspection_id] for row in rows if row.inspection_id in self._pictures}
-        self.film.fill(rows, {**self._pictures, **self._session.received.thumbs}, known)
-        more, parts = translate("history", "the newest 300") if len(rows) == FOUND else "", translate("history", "parts")
-        self._count.setText(f"{len(rows)} {parts}  {more}")
+        self._newest = 0 if last is None else last.record.inspection_id
+        found = {row.inspection_id for row in rows}
+        self._thumbs = {number: image for number, image in self._thumbs.items() if number in found}
+        self.film.fill(rows, self._known_thumbs(), known)
+        more = translate("history", "the newest 300") if len(rows) == FOUND else ""
+        self._count.setText(f"{len(rows)} {translate('history', 'parts')}  {more}")
         if self.film.chosen() is None and rows:
             self.film.setCurrentRow(0)
         elif not rows:
-            self._on_chosen()
+            self.show_chosen()
         if self.gallery.isChecked():
-            self._read_pictures(rows)
+            self._read_thumbs(rows)
 
     def open_part(self, number: int) -> None:
-        """Choose a part, whatever was looked for."""
+        """Show this part, whatever was searched for before."""
         self.fields.clear()
         self.search()
         if number not in self.film.rows:
@@ -144,155 +127,100 @@ class HistoryPage(Page):
     def _follow(self) -> None:
         """Add new parts automatically, but not while somebody looks further down."""
         last = self._session.received.last
-        newer = last is not None and last.record.inspection_id != self._seen
-        if newer and self.isVisible() and not self._work.busy and self.film.verticalScrollBar().value() == 0:
+        newer = last is not None and last.record.inspection_id != self._newest
+        if newer and self.isVisible() and not self.work.busy and self.film.verticalScrollBar().value() == 0:
             self.search()
 
-    def _on_chosen(self) -> None:
+    def _chosen_row(self) -> Row | None:
         number = self.film.chosen()
-        row = None if number is None else self.film.rows.get(number)
+        return None if number is None else self.film.rows.get(number)
+
+    def show_chosen(self) -> None:
+        """Read the record of the chosen part from disk and show it."""
+        row = self._chosen_row()
         if row is None:
             self.record.show_nothing()
         else:
             self.record.show_row(self._session.received.folder, row)
-        self._on_user()
+        self._read_review()
 
-    def _on_user(self) -> None:
-        """Who may say what of the chosen part, and what was said."""
+    def _read_review(self) -> None:
         number = self.film.chosen()
         self._review = None if number is None else self._reviews().get(number)
-        self._look()
+        self._refresh_buttons()
 
-    def _look(self) -> None:
-        number, user, review = self.film.chosen(), self._session.account.user, self._review
-        row = None if number is None else self.film.rows.get(number)
-        for opinion, button in self.opinions.items():
-            where = opinion is not Opinion.MISSED or bool(self.record.marks)
-            allowed = user is not None and not self._waiting and where
-            button.setEnabled(allowed and row is not None and opinion in possible(row.verdict))
-        for button in (self.export, self.list):
-            button.setEnabled(user is not None)
+    def _refresh_buttons(self) -> None:
+        row, logged_in = self._chosen_row(), self._session.account.user is not None
+        marked = bool(self.record.marks)
+        self.reviewing.show_review(
+            row, self._review, logged_in=logged_in, marked=marked, waiting=self.waiting
+        )
+        self.exports.setEnabled(logged_in)
         self.show_map.setEnabled(row is not None and self.record.strip_shown)
-        if row is None:
-            self._reviewed.setText("")
-            return
-        state = data(review.state if review else State.NONE)
-        said = ", ".join(f"{who}: {data(opinion)}" for who, opinion in review.opinions.items()) if review else ""
-        missed = user is not None and row.verdict == Verdict.OK and not self.record.marks
-        hint = translate("history", "log in to review") if user is None else ""
-        hint = translate("history", "touch the cells in which a defect was missed") if missed else hint
-        self._reviewed.setText(" · ".join(text for text in (state, said, hint) if text))
 
     def _reviews(self) -> dict[int, Review]:
-        """All reviews; if they cannot be read, that is said."""
+        """Return all reviews; show a message if they cannot be read."""
         try:
             return reviews(self._session.received.folder)
         except RecordError as error:
             self._problem.setText(str(error))
             return {}
 
-    def say(self, opinion: Opinion) -> None:
-        """Whoever is logged in says it of the chosen part."""
+    def give_review(self, opinion: Opinion) -> None:
+        """Ask the engine to record this opinion of the chosen part in the name of the user."""
         number = self.film.chosen()
         if number is None:
             return
         marks = self.record.marks if opinion is Opinion.MISSED else {}
-        self._waiting = True
-        self._look()
-        self._session.account.ask(GiveReview(number, opinion, self.comment.text().strip(), dict(marks)), self._on_said, self)
+        self.waiting = True
+        self._refresh_buttons()
+        request = GiveReview(number, opinion, self.reviewing.comment.text().strip(), dict(marks))
+        self._session.account.ask(request, self._on_answer, self)
 
-    def _on_said(self, answer: Answer) -> None:
-        self._waiting = False
+    def _on_answer(self, answer: Answer) -> None:
+        self.waiting = False
         if answer.done:
-            self.comment.clear()
+            self.reviewing.comment.clear()
             self.record.clear_marks()
             self.search()
         else:
             self._problem.setText(data(answer.refusal))
-        self._on_user()
+        self._read_review()
 
     def _on_gallery(self, gallery: bool) -> None:
         self.film.as_gallery(gallery)
         self.search()
 
-    def _read_pictures(self, rows: list[Row]) -> None:
-        folder, known = self._session.received.folder, {**self._pictures, **self._session.received.thumbs}
-        missing = [r for r in rows[:GALLERY] if r.inspection_id not in known]
-        if missing and not self._work.busy:
-            self._work.start(
-                translate("history", "pictures"),
-                lambda progress: small_pictures(folder, missing, progress),
-                self._on_pictures,
+    def _known_thumbs(self) -> dict[int, QImage]:
+        return {**self._thumbs, **self._session.received.thumbs}
+
+    def _read_thumbs(self, rows: Sequence[Row]) -> None:
+        folder, known = self._session.received.folder, self._known_thumbs()
+        missing = [row for row in rows[:GALLERY] if row.inspection_id not in known]
+        if missing and not self.work.busy:
+            self.work.start(
+                translate("history", "Reading images"),
+                lambda progress: thumbnails(folder, missing, progress),
+                self._on_thumbs,
             )
 
-    def _on_pictures(self, found: dict[int, QImage]) -> None:
-        self._pictures |= found
-        pictures = {**self._pictures, **self._session.received.thumbs}
-        self.film.fill(list(self.film.rows.values()), pictures, self._reviews())
-
-    def _on_map(self, made: tuple[int, QImage]) -> None:
-        number, overlay = made
-        shown = self.record.record
-        if shown is not None and shown.inspection_id == number:  # or another part was chosen meanwhile
-            self.record.strip.show_map(overlay)
-
-    def _ask_export(self) -> None:
-        folder = ask_folder(self, self._session, translate("history", "Folder for the crops of reviewed parts"))
-        if folder is not None:
-            self.export_to(folder / "reviewed")
-
-    def _ask_list(self) -> None:
-        path = ask_file(self, self._session, translate("history", "the parts that were found, as CSV"), "parts.csv")
-        if path is not None:
-            self.list_to(path)
-
-    def list_to(self, target: Path) -> None:
-        """Write the parts in the list as a table next to the window, one row each."""
-        folder, numbers = self._session.received.folder, list(self.film.rows)
-
-        def work(progress: Progress) -> str | None:
-            entries = _read(folder, numbers, progress)
-            if entries is None:
-                return None
-            with replacing(target) as part:  # the dialog has asked
-                problems = list(export(entries, folder, part, "csv"))
-            return f"{target}: {len(entries) - len(problems)}"
-
-        self._work.start(translate("history", "table"), work, self._said.setText)
+    def _on_thumbs(self, found: dict[int, QImage]) -> None:
+        self._thumbs |= found
+        self.film.fill(list(self.film.rows.values()), self._known_thumbs(), self._reviews())
 
     def _ask_map(self) -> None:
         record, settings = self.record.record, self._session.received.settings
         if record is not None:
-            title = translate("history", "defect map")
-            self._work.start(title, lambda _: defect_map(settings, record), self._on_map)
+            title = translate("history", "Computing the defect map")
+            self.work.start(title, lambda _: defect_map(settings, record), self._on_map)
 
-    def export_to(self, target: Path) -> None:
-        """Write the crops of the parts that two people agree on next to the window."""
-        folder = self._session.received.folder
-
-        def work(progress: Progress) -> str | None:
-            agreed = [number for number, review in reviews(folder).items() if review.agreed is not None]
-            entries = _read(folder, agreed, progress)
-            if entries is None:
-                return None
-            done, of = iter(range(len(entries))), len(entries)
-            problems = list(export(entries, folder, target, "reviewed", lambda: progress(next(done, 0), of)))
-            parts, left_out = translate("history", "parts"), translate("history", "left out")
-            return f"{target}: {len(entries) - len(problems)} {parts}, {len(problems)} {left_out}"
-
-        self._work.start(translate("history", "export"), work, self._said.setText)
+    def _on_map(self, made: tuple[int, QImage]) -> None:
+        number, overlay = made
+        shown = self.record.record
+        if shown is not None and shown.inspection_id == number:  # else another part was chosen meanwhile
+            self.record.strip.show_map(overlay)
 
     def close_page(self) -> None:
         """Stop timer and work."""
         self._timer.stop()
-        self._work.close_work()
-
-
-def _read(folder: Path, numbers: Sequence[int], progress: Progress) -> list[Listed] | None:
-    """Return the records of these numbers; None if cancelled."""
-    entries: list[Listed] = []
-    for count, number in enumerate(numbers):
-        if not progress(count, len(numbers)):
-            return None
-        entries += read_records(folder, Wanted(number=number))
-    return entries
+        self.work.close_work()

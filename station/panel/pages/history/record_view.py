@@ -4,46 +4,48 @@ from math import ceil
 from pathlib import Path
 
 from PySide6.QtCore import Signal
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
 from station.archive.reader import Row, read_record
 from station.classify.thresholds import Thresholds
 from station.defects import KINDS
-from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Ring, Verdict
+from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Quality, Ring, Verdict
 from station.errors import ImageError, LocateError
 from station.journal.reviews import Marks
 from station.panel.look.words import data, translate
 from station.panel.widgets.card import Facts, Table, label, titled
-from station.panel.widgets.weld.kept import of_record
-from station.panel.widgets.weld.pictures import nok_scores
+from station.panel.widgets.weld.previews import nok_scores
+from station.panel.widgets.weld.recorded import DELETED, NO_IMAGE, of_record
 from station.panel.widgets.weld.strip_view import StripView
 from station.panel.widgets.weld.weld_view import WeldView
 from station.records import Record
 
 
 class RecordView(QWidget):
-    """Picture, strip, findings, figures, who judged."""
+    """Shows image, strip, findings and figures of a record, and which model judged it."""
 
     marked = Signal()
+    """Emitted when a segment was marked or unmarked."""
 
     def __init__(self) -> None:
         super().__init__()
         self.record: Record | None = None
         self.strip_shown = False
-        """Whether its picture is there."""
+        """True if the strip of the record is shown."""
         self.marks: Marks = {}
-        """Where somebody says that a defect was missed."""
+        """Segments in which the user says that a defect was missed, with its kind."""
         self.weld, self.strip = WeldView(), StripView(96)
         self.weld.setMinimumSize(260, 250)
         self.strip.touched.connect(self.mark)
         self.findings = Table(
             (
                 translate("history", "finding"),
-                translate("history", "from °"),
-                translate("history", "to °"),
-                translate("history", "length mm"),
-                translate("history", "width mm"),
-                translate("history", "area mm²"),
+                translate("history", "from (°)"),
+                translate("history", "to (°)"),
+                translate("history", "length (mm)"),
+                translate("history", "width (mm)"),
+                translate("history", "area (mm²)"),
                 translate("history", "score"),
             ),
             stretch=0,
@@ -56,14 +58,14 @@ class RecordView(QWidget):
                 "serial": translate("history", "serial"),
                 "part": translate("history", "part · trigger"),
                 "time": translate("history", "time"),
-                "shown": translate("history", "seen by the PLC"),
+                "shown": translate("history", "reported to the PLC"),
                 "quality": translate("history", "brightness · sharpness · saturated"),
-                "ring": translate("history", "ring x · y · r · residual px"),
+                "ring": translate("history", "ring x · y · radius · residual (px)"),
                 "novelty": translate("history", "distance to the training images"),
-                "steps": translate("history", "steps ms"),
+                "steps": translate("history", "times of the steps (ms)"),
                 "limits": translate("history", "limits"),
                 "model": translate("history", "model · recipe"),
-                "hash": translate("history", "model's hash · configuration"),
+                "hash": translate("history", "model hash · configuration"),
                 "origin": translate("history", "origin · purpose"),
             }
         )
@@ -82,12 +84,12 @@ class RecordView(QWidget):
         grid.setColumnStretch(0, 1)
 
     def show_nothing(self, why: str = "") -> None:
-        """No record, or one that cannot be read."""
+        """Show no record; `why` is given if it cannot be read."""
         self.record, self.strip_shown, self.marks = None, False, {}
         self.problem.setText(why)
         self.weld.show_weld(
             None,
-            translate("history", "the record cannot be read") if why else translate("history", "no part"),
+            translate("history", "The record cannot be read.") if why else translate("history", "no part"),
         )
         self.strip.show_strip(None, (), ())
         self.strip.show_marks({})
@@ -95,67 +97,58 @@ class RecordView(QWidget):
         self.facts.set(**dict.fromkeys(self.facts.values, "–"))
 
     def clear_marks(self) -> None:
-        """They are one person's."""
+        """Remove all marks, as they are those of one user."""
         self.marks = {}
         self.strip.show_marks({})
 
     def mark(self, index: int) -> None:
-        """Mark a touched cell of an OK part: each kind of defect in turn, then none."""
+        """Mark a touched segment of an OK part with each kind of defect in turn, then with none."""
         if self.record is None or self.record.verdict is not Verdict.OK:
             return
-        now = self.marks.pop(index + 1, None)
+        current = self.marks.pop(index + 1, None)
         turns = [None, *(kind.reason for kind in KINDS), None]
-        following = turns[turns.index(now) + 1]
+        following = turns[turns.index(current) + 1]
         if following is not None:
             self.marks[index + 1] = following
         self.strip.show_marks({number: data(kind) for number, kind in self.marks.items()})
         self.marked.emit()
 
     def show_row(self, folder: Path, row: Row) -> None:
-        """Read it from disk; what is missing or wrong is said."""
+        """Read a record from disk and show it, with a message if something is missing or altered."""
         self.record, problem = read_record(folder, row)
-        said = "" if problem is None else f"{row.record_file}: {problem}"
+        message = "" if problem is None else f"{row.record_file}: {problem}"
         if self.record is None:
-            self.show_nothing(said)
+            self.show_nothing(message)
             return
-        self.problem.setText(said)
-        record, inspection = self.record, self.record.inspection
-        nok = inspection.nok
+        self.problem.setText(message)
         self.marks = {}
-        try:
-            drawn, strip = of_record(folder, record)
-            self.weld.show_weld(drawn)
-        except (ImageError, LocateError) as error:
-            strip = None
-            self.weld.show_weld(
-                None,
-                data(str(error))
-                if len(str(error)) < 60
-                else translate("history", "its picture cannot be read"),
-            )
-        self.strip.show_strip(strip, nok_scores(record), nok)
+        record, strip = self.record, self._show_image(folder, self.record)
+        self.strip.show_strip(strip, nok_scores(record), record.inspection.nok)
         self.strip.show_marks({})
         self.strip_shown = strip is not None
-        tolerated = translate("history", "tolerated")
         self.findings.fill(
-            [
-                (
-                    data(f.kind)
-                    + (f" ({tolerated})" if nok and not any(nok[s] for s in _segments(f)) else ""),
-                    f"{f.start_deg:.1f}",
-                    f"{f.end_deg:.1f}",
-                    f"{f.length_mm:.2f}",
-                    "–" if f.width_mm is None else f"{f.width_mm:.2f}",
-                    "–" if f.area_mm2 is None else f"{f.area_mm2:.2f}",
-                    f"{f.score:.3f}",
-                )
-                for f in inspection.findings
-            ]
+            [_finding_row(finding, record.inspection.nok) for finding in record.inspection.findings]
         )
+        self._show_facts(record, row.shown_to_plc)
+
+    def _show_image(self, folder: Path, record: Record) -> QImage | None:
+        """Show the image of a record, or why there is none. Return its strip."""
+        try:
+            drawn, strip = of_record(folder, record)
+        except (ImageError, LocateError) as error:
+            is_known = str(error) in (NO_IMAGE, DELETED)
+            unreadable = translate("history", "The image cannot be read.")
+            self.weld.show_weld(None, data(str(error)) if is_known else unreadable)
+            return None
+        self.weld.show_weld(drawn)
+        return strip
+
+    def _show_facts(self, record: Record, reported: bool | None) -> None:
+        inspection, provenance = record.inspection, record.provenance
+        ring, quality, timing = inspection.ring, inspection.quality, inspection.timing
         reason = "" if inspection.reason is None else f": {data(inspection.reason)}"
-        ring, q, t, p = inspection.ring, inspection.quality, inspection.timing, record.provenance
-        steps = (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms)
-        shown = {
+        steps = (timing.grab_ms, timing.locate_ms, timing.unwrap_ms, timing.classify_ms)
+        answers = {
             True: translate("history", "yes"),
             False: translate("history", "no"),
             None: translate("history", "unknown"),
@@ -165,20 +158,39 @@ class RecordView(QWidget):
             serial=record.serial or "–",
             part=f"{record.inspection_id} · {record.trigger_id or '–'}",
             time=f"{record.grabbed_at.astimezone():%d.%m.%Y %H:%M:%S}",
-            shown=shown[row.shown_to_plc],
-            quality="–" if q is None else f"{q.mean_dn:.0f} · {q.sharpness:.3f} · {q.saturated_share:.1%}",
+            shown=answers[reported],
+            quality="–" if quality is None else _quality(quality),
             novelty="–" if inspection.novelty is None else f"{inspection.novelty:.2f}",
             ring="–" if ring is None else _ring(ring),
             steps=" · ".join("–" if ms is None else f"{ms:.0f}" for ms in steps),
-            limits="\n".join(_limits(p.thresholds)),
-            model=f"{p.model_version} · {p.recipe}",
-            hash=f"{p.model_hash[:12]} · {p.config_crc:04X}",
+            limits="\n".join(_limits(provenance.thresholds)),
+            model=f"{provenance.model_version} · {provenance.recipe}",
+            hash=f"{provenance.model_hash[:12]} · {provenance.config_crc:04X}",
             origin=f"{data(record.origin)} · {data(record.purpose)}",
         )
 
 
+def _finding_row(finding: Finding, nok: tuple[bool, ...]) -> tuple[str, ...]:
+    """Return the texts of a finding; one in no rejected segment is tolerated."""
+    is_tolerated = bool(nok) and not any(nok[index] for index in _segments(finding))
+    tolerated = translate("history", "tolerated")
+    return (
+        data(finding.kind) + (f" ({tolerated})" if is_tolerated else ""),
+        f"{finding.start_deg:.1f}",
+        f"{finding.end_deg:.1f}",
+        f"{finding.length_mm:.2f}",
+        "–" if finding.width_mm is None else f"{finding.width_mm:.2f}",
+        "–" if finding.area_mm2 is None else f"{finding.area_mm2:.2f}",
+        f"{finding.score:.3f}",
+    )
+
+
+def _quality(quality: Quality) -> str:
+    return f"{quality.mean_dn:.0f} · {quality.sharpness:.3f} · {quality.saturated_share:.1%}"
+
+
 def _segments(finding: Finding) -> list[int]:
-    """Indices of the segments that it lies in."""
+    """Return the indices of the segments in which a finding lies."""
     first, last = int(finding.start_deg // SEGMENT_DEG), ceil(finding.end_deg / SEGMENT_DEG) - 1
     return [index % SEGMENTS for index in range(first, max(first, last) + 1)]
 

@@ -1,4 +1,4 @@
-"""What is looked for among the past parts; pure."""
+"""A search among the recorded parts; pure."""
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -9,35 +9,36 @@ from station.domain import Purpose, Verdict
 from station.journal.reviews import Review, State, reviews
 
 FOUND = 300
-"""Parts that are shown at most, the newest."""
+"""Maximum number of parts that are shown, the newest."""
 SEARCHED = 5000
-"""Parts that are looked at, the newest, when the state of their reviews is asked for."""
+"""Maximum number of parts, the newest, whose reviews are searched."""
 MIN_SCORE = 0.05
-"""Least score by which a segment is looked for, if none is named: lower ones are not in the index."""
+"""Minimum score for a search by segment without a score: lower scores are not in the index."""
 TO_CONFIRM = "to be confirmed"
+"""Choice of the NOK parts on which two people do not agree yet."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
-    """One question to the archive; None: anything."""
+    """Conditions that the found parts meet; None stands for any."""
 
     serial: str = ""
-    """A serial, or a prefix that ends in *."""
+    """Serial, or a prefix followed by *."""
     hours: float | None = None
-    """Parts of the last so many hours."""
+    """Length of the time up to now in which the part was grabbed."""
     since: datetime | None = None
     until: datetime | None = None
-    """Parts between two times, instead of `hours`."""
+    """Times between which the part was grabbed, instead of `hours`."""
     verdict: str | None = None
     reason: str | None = None
     segment: int | None = None
     score: float | None = None
-    """Score of NOK, at least: of the segment, or of the worst."""
+    """Minimum score of NOK, of the segment or of the worst one."""
     state: str | None = None
     """State of the review, or `TO_CONFIRM`."""
 
-    def wanted(self, now: datetime) -> Wanted:
-        """Return what the archive is asked for; the state of the reviews is not in its index."""
+    def query(self, now: datetime) -> Wanted:
+        """Return the query for the archive's index, which does not have the state of the reviews."""
         return Wanted(
             serial=self.serial.strip() or None,
             since=self.since if self.hours is None else now - timedelta(hours=self.hours),
@@ -51,17 +52,14 @@ class Search:
         )
 
     def fits(self, row: Row, review: Review | None) -> bool:
-        """Return whether a part is in the state of review that is asked for.
-
-        A part is to be confirmed if it was judged NOK and two people do not agree on it yet.
-        """
-        now = State.NONE if review is None else review.state
+        """Return whether the review of a part has the state that is searched for."""
+        current = State.NONE if review is None else review.state
         if self.state == TO_CONFIRM:
-            return row.verdict == Verdict.NOK and row.purpose == Purpose.PART and now is not State.AGREED
-        return self.state is None or now == self.state
+            return row.verdict == Verdict.NOK and row.purpose == Purpose.PART and current is not State.AGREED
+        return self.state is None or current == self.state
 
     def run(self, folder: Path, now: datetime) -> tuple[list[Row], dict[int, Review]]:
-        """Return the newest parts that fit, and all reviews. Raises RecordError."""
+        """Return the newest parts that match, and all reviews. Raises RecordError."""
         known = reviews(folder)
-        rows = find(folder, self.wanted(now))
+        rows = find(folder, self.query(now))
         return [row for row in rows if self.fits(row, known.get(row.inspection_id))][:FOUND], known

@@ -1,1 +1,1 @@
-"""The PLC side: bits, registers, edges."""
+"""The page Line: bits, registers and edges between station and PLC."""

@@ -1,4 +1,4 @@
-"""The PLC side: live bits and registers with their names, edges with milliseconds, the word order, bits set by hand."""
+"""The page Line: bits, registers and edges between station and PLC, word order, bits set by hand."""
 
 import struct
 from collections import deque
@@ -32,19 +32,20 @@ from station.plc.map.registers import (
 )
 
 EDGES = 400
+"""Maximum number of edges that are shown, the newest."""
 REFRESH_MS = 500
 
 
 class LinePage(Page):
-    """Follows the status events and the bus recorder's file."""
+    """Shows the status events and the recorded edges of the bus."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
         self._edges: deque[Edge] = deque(maxlen=EDGES)
         self._place: tuple[str, int] = ("", 0)
-        self._lamps: dict[tuple[str, IntFlag], QLabel] = {}
-        """By register: bits of CONTROL and STATUS are equal numbers."""
+        self.lamps: dict[tuple[str, IntFlag], QLabel] = {}
+        """Lamps by register and bit."""
         self.registers = Table(
             (translate("line", "register"), translate("line", "name"), translate("line", "value")), stretch=2
         )
@@ -52,17 +53,17 @@ class LinePage(Page):
             (
                 translate("line", "time"),
                 translate("line", "by"),
-                translate("line", "what"),
+                translate("line", "signal"),
                 translate("line", "value"),
                 translate("line", "note"),
             ),
             stretch=4,
         )
         self._words = label("", "quiet", wrap=True)
-        self._stale = label(
-            translate("line", "no word from the engine: the registers are as they last were"), "problem"
+        self.stale = label(
+            translate("line", "No connection to the engine. The registers show their last values."), "problem"
         )
-        self._stale.hide()
+        self.stale.hide()
         self._problem = label("", "problem")
         self.service = QPushButton(translate("line", "Service mode"))
         self.service.setCheckable(True)
@@ -101,7 +102,7 @@ class LinePage(Page):
                 lamp = QLabel(str(flag.name))
                 lamp.setAlignment(Qt.AlignmentFlag.AlignCenter)
                 lamp.setMinimumHeight(30)
-                self._lamps[register, flag] = lamp
+                self.lamps[register, flag] = lamp
                 grid.addWidget(lamp, row * 3 + 1 + index // 8, index % 8)
         hand = QHBoxLayout()
         for widget in (
@@ -113,13 +114,13 @@ class LinePage(Page):
             hand.addWidget(widget)
         hand.addStretch(1)
         below = QSplitter(Qt.Orientation.Horizontal)
-        below.addWidget(titled(translate("line", "Registers as the PLC has them"), self.registers))
-        below.addWidget(titled(translate("line", "Edges on the bus, the newest first"), self.edges))
+        below.addWidget(titled(translate("line", "registers"), self.registers))
+        below.addWidget(titled(translate("line", "edges on the bus, newest first"), self.edges))
         below.setSizes([420, 660])
         column = QVBoxLayout(self)
         column.addWidget(bits)
         column.addLayout(hand)
-        column.addWidget(self._stale)
+        column.addWidget(self.stale)
         column.addWidget(self._words)
         column.addWidget(below, 1)
 
@@ -131,23 +132,30 @@ class LinePage(Page):
             or not (self.isVisible() or self.registers.rowCount() == 0)
         ):
             return
-        self._stale.setVisible(not there)
+        self.stale.setVisible(not there)
         self.registers.setEnabled(there)
         values = unpack_window(COMMAND_START, list(status.command_words)) | unpack_window(
             STATUS_START, list(status.status_words)
         )
-        held = {"CONTROL": status.line.control, "STATUS": status.line.status}
-        c = theme.colors()
-        for (register, flag), lamp in self._lamps.items():
-            on = there and bool(flag & held[register])
-            said = f"● {flag.name}" if on else f"○ {flag.name}" if there else f"? {flag.name}"
-            if lamp.text() != said:
-                lamp.setText(said)
-                on_style = f"background: {c.accent}; color: {c.background}; font-weight: 700;"
+        bits = {"CONTROL": status.line.control, "STATUS": status.line.status}
+        colors = theme.colors()
+        for (register, flag), lamp in self.lamps.items():
+            on = there and bool(flag & bits[register])
+            symbol = "?" if not there else "●" if on else "○"
+            text = f"{symbol} {flag.name}"
+            if lamp.text() != text:
+                lamp.setText(text)
+                on_style = f"background: {colors.accent}; color: {colors.background}; font-weight: 700;"
                 lamp.setStyleSheet(
-                    "border-radius: 4px; font-size: 12px; " + (on_style if on else f"background: {c.raised};")
+                    "border-radius: 4px; font-size: 12px; "
+                    + (on_style if on else f"background: {colors.raised};")
                 )
-        self.registers.fill([(str(r.address), r.name, _shown(r.name, values[r.name])) for r in MAP])
+        self.registers.fill(
+            [
+                (str(register.address), register.name, _shown(register.name, values[register.name]))
+                for register in MAP
+            ]
+        )
         words = status.status_words
         for_u32, for_f32 = (
             words[BY_NAME[name].address - STATUS_START :][:2] for name in ("TEST_U32", "TEST_F32")
@@ -158,10 +166,13 @@ class LinePage(Page):
         self._words.setText(
             translate(
                 "line",
-                "Word order: TEST_U32 must read 16#12345678 (305419896), TEST_F32 123.456. Sent words:",
+                "Word order: the PLC must read TEST_U32 as 16#12345678 (305419896) and TEST_F32 as 123.456. "
+                "Words sent:",
             )
             + f" {for_u32[0]:04X} {for_u32[1]:04X} · {for_f32[0]:04X} {for_f32[1]:04X} ({test_f32:.3f}). "
-            + translate("line", "If the PLC reads 16#56781234, exchange its words or set plc.low_word_first.")
+            + translate(
+                "line", "If it reads 16#56781234, swap the words in the PLC or set plc.low_word_first."
+            )
         )
 
     def _on_service(self) -> None:
@@ -172,7 +183,7 @@ class LinePage(Page):
         hint = (
             ""
             if session.account.may(Level.SETTER)
-            else translate("line", "log in as setter first (page Setup)")
+            else translate("line", "Log in as setter first (page Setup).")
         )
         self._problem.setText(hint)
         with QSignalBlocker(self.bits):
@@ -212,18 +223,24 @@ class LinePage(Page):
             return
         self._edges.extend(new)
         rows = [
-            (_time(e.time), data(e.by), e.name, str(e.value), data(e.note) if e.note else "")
-            for e in reversed(self._edges)
+            (
+                _time(edge.time),
+                data(edge.by),
+                edge.name,
+                str(edge.value),
+                data(edge.note) if edge.note else "",
+            )
+            for edge in reversed(self._edges)
         ]
         self.edges.fill(rows)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
-        """What came while nobody looked."""
+        """Show at once what came while the page was hidden."""
         super().showEvent(event)
         self._on_status()
 
     def close_page(self) -> None:
-        """Stop following."""
+        """Stop the timer."""
         self._timer.stop()
 
 

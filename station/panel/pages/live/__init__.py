@@ -1,1 +1,1 @@
-"""What the operator looks at: frame, strip, lamp, clock face."""
+"""The page Live: image, strip, verdict lamp, clock face."""

@@ -1,4 +1,4 @@
-"""What the operator looks at: the picture, the lamp, the part, the last NOK, where defects lie."""
+"""The page Live: verdict lamp, image and strip of the newest part, counters, the last NOK part."""
 
 import time
 
@@ -26,18 +26,20 @@ from station.panel.session.lamp import foot, lamp
 from station.panel.session.received import shows
 from station.panel.session.session import Session
 from station.panel.widgets.card import Facts, label, titled
+from station.panel.widgets.progress import Progress
 from station.panel.widgets.weld.clock_face import ClockFace
-from station.panel.widgets.weld.pictures import drawn, nok_scores, strip_image
+from station.panel.widgets.weld.previews import drawn, drawn_part, nok_scores, strip_image
 from station.panel.widgets.weld.strip_view import StripView
 from station.panel.widgets.weld.weld_view import WeldView
-from station.panel.widgets.work import Progress, WorkBar
+from station.panel.widgets.work import WorkBar
 
 AGE_MS = 200
-SIDE_PX, SIDE_SHARE = 380, 0.32
+"""Interval at which the lamp is shown again, as it fades with time."""
+SIDE_PX, SIDE_FRACTION = 380, 0.32
 
 
 class LivePage(Page):
-    """Built from the session; follows it."""
+    """Shows what the session receives."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -49,7 +51,7 @@ class LivePage(Page):
                 "serial": translate("live", "serial"),
                 "recipe": translate("live", "recipe"),
                 "cycle": translate("live", "cycle"),
-                "picture": translate("live", "picture"),
+                "novelty": translate("live", "image"),
                 "parts": translate("live", "parts"),
                 "ok": "OK",
                 "nok": "NOK",
@@ -58,29 +60,31 @@ class LivePage(Page):
             },
             columns=2,
         )
-        self._nok_strip, self._nok_text = StripView(70), label("–", "quiet")
+        self.nok_strip, self.nok_text = StripView(70), label("–", "quiet")
         self._nok_shown: tuple[int, bool] | None = None
-        """Number of the pinned part, and whether its picture had come."""
+        """Number of the last NOK part that is shown, and whether its image had come."""
         self.scores, self._segment = ScoreHistory(), 0
         self.strip.touched.connect(self._show_scores)
-        self._nok_strip.touched.connect(lambda _: self._open_pinned())
+        self.nok_strip.touched.connect(lambda _: self._open_pinned())
         self.scores.touched.connect(lambda: self._angles.setCurrentWidget(self.clock))
-        self.test = QPushButton(translate("live", "Test picture"))
+        self.test = QPushButton(translate("live", "Test image"))
         self.test.setToolTip(
-            translate("live", "Take a picture of what lies there now and judge it; the PLC is told nothing")
+            translate("live", "Take an image now and judge it. Nothing is reported to the PLC.")
         )
-        self.test.clicked.connect(self._ask_test)
+        self.test.clicked.connect(self.take_test_image)
         self.hold = QPushButton(translate("live", "Hold"))
-        self.hold.setToolTip(translate("live", "The picture stays; lamp and counters go on"))
+        self.hold.setToolTip(translate("live", "Keep this image on the page. Lamp and counters continue."))
         self.hold.setCheckable(True)
-        self.hold.toggled.connect(self._show_picture)
+        self.hold.toggled.connect(self._show_image)
         self._held = False
-        """Whether a picture stays."""
+        """True while an image is held."""
         self.show_map = QPushButton(translate("live", "Defect map"))
-        self.show_map.setToolTip(translate("live", "Where the network sees defects in the last NOK part"))
+        self.show_map.setToolTip(
+            translate("live", "Show where the network sees defects on the last NOK part")
+        )
         self.show_map.clicked.connect(self._ask_map)
         self._work = WorkBar()
-        self._work.failed.connect(lambda why: self._nok_text.setText(data(why)))
+        self._work.failed.connect(lambda why: self.nok_text.setText(data(why)))
         self._lay_out()
         session.received.status_changed.connect(self._on_status)
         session.received.part_came.connect(self._on_part)
@@ -104,7 +108,7 @@ class LivePage(Page):
         self._angles = QStackedWidget()
         for widget in (self.clock, self.scores):
             self._angles.addWidget(widget)
-        column.addWidget(titled(translate("live", "NOK segments of the last parts"), self._angles), 3)
+        column.addWidget(titled(translate("live", "NOK segments of the newest parts"), self._angles), 3)
         buttons = QHBoxLayout()
         for button in (self.test, self.show_map, self.hold):
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -113,12 +117,12 @@ class LivePage(Page):
         pinned = QWidget()
         rows = QVBoxLayout(pinned)
         rows.setContentsMargins(0, 0, 0, 0)
-        rows.addWidget(self._nok_strip)
+        rows.addWidget(self.nok_strip)
         last = titled(translate("live", "last NOK"), pinned)
-        foot = last.layout()
-        if foot is not None:
-            foot.addWidget(self._nok_text)
-            foot.addWidget(self._work)
+        below = last.layout()
+        if below is not None:
+            below.addWidget(self.nok_text)
+            below.addWidget(self._work)
         grid = QGridLayout(self)
         grid.addWidget(self.weld, 0, 0)
         grid.addWidget(side, 0, 1, 2, 1)
@@ -133,10 +137,14 @@ class LivePage(Page):
         status = self._session.received.status
         if status is None:
             return
-        c = status.line.counts
-        share = f"{c.ok / c.total:.1%}" if c.total else "–"
+        counts = status.line.counts
         self.facts.set(
-            parts=c.total, ok=c.ok, nok=c.nok, error=c.error, recipe=status.recipe, **{"yield": share}
+            parts=counts.total,
+            ok=counts.ok,
+            nok=counts.nok,
+            error=counts.error,
+            recipe=status.recipe,
+            **{"yield": f"{counts.ok / counts.total:.1%}" if counts.total else "–"},
         )
         self.age()
 
@@ -144,20 +152,13 @@ class LivePage(Page):
         last = self._session.received.last
         if last is None:
             return
-        event, record = last, last.record
-        t = record.inspection.timing
-        steps = (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms, event.record_ms, event.publish_ms)
-        drifting = event.drift is not None and event.drift.alarm
-        known = translate("live", "known")
-        picture = (
-            translate("live", "UNLIKE TRAINING")
-            if event.novel
-            else translate("live", "DRIFTING")
-            if drifting
-            else known
+        record = last.record
+        self.facts.set(
+            part=record.inspection_id,
+            serial=record.serial or "–",
+            novelty=_novelty(last),
+            cycle=f"{_cycle_ms(last):.0f} ms",
         )
-        cycle = f"{sum(ms for ms in steps if ms is not None):.0f} ms"
-        self.facts.set(part=record.inspection_id, serial=record.serial or "–", picture=picture, cycle=cycle)
         counts = [0] * SEGMENTS
         for part in self._session.received.parts:
             for index, nok in enumerate(
@@ -167,12 +168,12 @@ class LivePage(Page):
         self.clock.show_counts(tuple(counts))
         if self._angles.currentWidget() is self.scores:
             self._show_scores(self._segment)
-        self._show_picture()
+        self._show_image()
         self._show_pinned()
         self.age()
 
     def _on_preview(self) -> None:
-        self._show_picture()
+        self._show_image()
         self._show_pinned()
 
     def _show_pinned(self) -> None:
@@ -183,15 +184,15 @@ class LivePage(Page):
             shown = part.record.inspection_id, preview is not None
             if shown != self._nok_shown:
                 self._nok_shown = shown
-                self._nok_text.setText(_caption(part))
-                self._nok_strip.show_strip(
+                self.nok_text.setText(_caption(part))
+                self.nok_strip.show_strip(
                     None if preview is None else strip_image(preview),
                     nok_scores(part.record),
                     part.record.inspection.nok,
                 )
 
-    def _show_picture(self) -> None:
-        """The last part's own picture; else, darkened, the one before, and said so."""
+    def _show_image(self) -> None:
+        """Show the image of the newest part; until it comes, darken the one before and say so."""
         last, preview = self._session.received.last, self._session.received.preview
         if last is None or (self.hold.isChecked() and self._held):
             return
@@ -199,16 +200,16 @@ class LivePage(Page):
         if preview is not None and shows(preview, last):
             self._held = self.hold.isChecked()
             held = "  ·  " + translate("live", "HELD") if self._held else ""
-            self.weld.show_weld(drawn(preview, last), caption=_caption(last) + held)
+            self.weld.show_weld(drawn_part(preview, last), caption=_caption(last) + held)
             self.strip.show_strip(strip_image(preview), nok_scores(last.record), last.record.inspection.nok)
         else:
             before = "" if preview is None else f"\n({preview.inspection_id})"
-            note = translate("live", "no picture of this part") + before
-            self.weld.show_weld(None if preview is None else drawn(preview, None), note)
+            note = translate("live", "no image of this part") + before
+            self.weld.show_weld(None if preview is None else drawn(preview), note)
             self.strip.show_strip(None, nok_scores(last.record), last.record.inspection.nok)
 
     def age(self) -> None:
-        """Lamps fade with time."""
+        """Show the lamp as it is now: it fades with time."""
         session = self._session
         last, now = session.received.last, time.monotonic()
         status = session.received.status
@@ -223,40 +224,38 @@ class LivePage(Page):
         record, settings = pinned.part.record, self._session.received.settings
 
         def work(_progress: Progress) -> tuple[int, QImage]:
-            from station.panel.widgets.weld.kept import defect_map  # only who asks pays for the network
+            from station.panel.widgets.weld.recorded import defect_map  # loads the network: on request only
 
             return defect_map(settings, record)
 
-        self._work.start(translate("live", "defect map"), work, self._on_map)
+        self._work.start(translate("live", "Computing the defect map"), work, self._on_map)
 
-    def _ask_test(self) -> None:
-        self._session.account.ask(TakeTestImage(), self._on_test, self)
+    def take_test_image(self) -> None:
+        """Ask the engine for a test image."""
+        self._session.account.ask(TakeTestImage(), self._on_answer, self)
 
-    def _on_test(self, answer: Answer) -> None:
+    def _on_answer(self, answer: Answer) -> None:
         if not answer.done:
-            self._nok_text.setText(data(answer.refusal))
+            self.nok_text.setText(data(answer.refusal))
 
     def _on_map(self, made: tuple[int, QImage]) -> None:
         number, overlay = made
-        if (
-            self._nok_shown is not None and self._nok_shown[0] == number
-        ):  # or another part has been pinned since
-            self._nok_strip.show_map(overlay)
+        if self._nok_shown is not None and self._nok_shown[0] == number:  # else another NOK part has come
+            self.nok_strip.show_map(overlay)
 
     def _show_scores(self, segment: int) -> None:
-        """Of the last parts, oldest first."""
+        """Show the scores of one segment over the newest parts, the oldest first."""
         self._segment = segment
-        seen = [
-            p
-            for p in self._session.received.parts
-            if p.record.purpose is Purpose.PART and p.record.inspection.scores
+        inspections = [
+            part.record.inspection
+            for part in self._session.received.parts
+            if part.record.purpose is Purpose.PART and part.record.inspection.scores
         ]
-        scores = [p.record.inspection.scores[segment].nok for p in seen]
         parts, name = translate("live", "parts"), translate("live", "segment")
         self.scores.show_scores(
-            scores,
-            [p.record.inspection.nok[segment] for p in seen],
-            f"{name} {segment + 1} · {len(seen)} {parts}",
+            [inspection.scores[segment].nok for inspection in inspections],
+            [inspection.nok[segment] for inspection in inspections],
+            f"{name} {segment + 1} · {len(inspections)} {parts}",
         )
         self._angles.setCurrentWidget(self.scores)
 
@@ -265,17 +264,17 @@ class LivePage(Page):
             self._session.part_chosen.emit(self._nok_shown[0])
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        """The lamp grows with the screen: it is read from afar."""
+        """Make the lamp larger on a larger screen, as it is read from afar."""
         super().resizeEvent(event)
-        self._side.setFixedWidth(max(SIDE_PX, int(self.width() * SIDE_SHARE)))
+        self._side.setFixedWidth(max(SIDE_PX, int(self.width() * SIDE_FRACTION)))
 
     def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
-        """Nobody looks at what is held."""
+        """Release a held image when the page is left."""
         self.hold.setChecked(False)
         super().hideEvent(event)
 
     def close_page(self) -> None:
-        """Nothing is left running."""
+        """Stop timer and work."""
         self._ageing.stop()
         self._work.close_work()
 
@@ -283,3 +282,18 @@ class LivePage(Page):
 def _caption(part: PartEvent) -> str:
     record = part.record
     return f"{record.inspection_id}  {record.serial}  {record.grabbed_at.astimezone():%H:%M:%S}"
+
+
+def _novelty(part: PartEvent) -> str:
+    """Return how the image of a part compares with the training images."""
+    if part.novel:
+        return translate("live", "UNLIKE TRAINING")
+    if part.drift is not None and part.drift.alarm:
+        return translate("live", "DRIFTING")
+    return translate("live", "known")
+
+
+def _cycle_ms(part: PartEvent) -> float:
+    timing = part.record.inspection.timing
+    steps = (timing.grab_ms, timing.locate_ms, timing.unwrap_ms, timing.classify_ms)
+    return sum(ms for ms in (*steps, part.record_ms, part.publish_ms) if ms is not None)

@@ -25,7 +25,7 @@ class ScoreHistory(QWidget):
         self.setMinimumSize(170, 170)
 
     def show_scores(self, scores: Sequence[float], nok: Sequence[bool], foot: str) -> None:
-        """Show the score of NOK, 0 to 1, of each part and whether the segment was rejected; `foot` is the line below."""
+        """Show the score of NOK, 0 to 1, of each part and whether it was rejected, and the text `foot`."""
         self.scores, self._nok, self._foot = tuple(scores), tuple(nok), foot
         self.update()
 

@@ -1,1 +1,1 @@
-"""Recorded images judged again."""
+"""The page Replay: recorded images judged again."""

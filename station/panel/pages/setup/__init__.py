@@ -1,1 +1,1 @@
-"""Behind a login: camera, recipe, masters, users, journal."""
+"""The page Setup: login, camera, recipe, masters, users, journal."""

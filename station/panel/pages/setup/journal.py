@@ -1,4 +1,4 @@
-"""What people did: changes with their reasons, logins, reviews; it only grows."""
+"""The tab Journal: what people and the station did, with reasons."""
 
 from datetime import datetime
 
@@ -12,11 +12,12 @@ from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, Table, label
 
 SHOWN = 500
+"""Maximum number of entries that are shown, the newest."""
 REFRESH_MS = 2000
 
 
 class JournalPage(FollowingPage):
-    """Follows the journal."""
+    """Shows the journal and follows it."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -29,8 +30,8 @@ class JournalPage(FollowingPage):
             (
                 translate("journal", "time"),
                 translate("journal", "who"),
-                translate("journal", "what"),
-                translate("journal", "of"),
+                translate("journal", "action"),
+                translate("journal", "object"),
                 translate("journal", "before"),
                 translate("journal", "after"),
                 translate("journal", "reason"),
@@ -49,7 +50,7 @@ class JournalPage(FollowingPage):
         self.follow(REFRESH_MS)
 
     def refresh(self) -> None:
-        """Read it again."""
+        """Read the journal again and show its entries."""
         kind = self.kind.currentData()
         try:
             found = entries(self._session.received.folder, () if kind is None else (kind,), limit=SHOWN)
@@ -57,28 +58,27 @@ class JournalPage(FollowingPage):
             self._problem.setText(str(error))
             return
         rows = []
-        for e in found:
-            before, after = (
-                ("", "") if e.kind is Kind.USER else (e.before, e.after)
-            )  # a PIN's hash is nobody's business
-            if e.kind is Kind.USER:
-                after = translate("journal", "saved") if e.after else translate("journal", "removed")
-            when = datetime.fromisoformat(e.at).astimezone()
+        for entry in found:
+            before, after = entry.before, _in_words(entry.after)
+            if entry.kind is Kind.USER:  # the hash of a PIN is not shown
+                before = ""
+                after = translate("journal", "saved") if entry.after else translate("journal", "removed")
+            when = datetime.fromisoformat(entry.at).astimezone()
             rows.append(
                 (
                     f"{when:%d.%m.%Y %H:%M:%S}",
-                    data(e.who),
-                    data(e.kind),
-                    data(e.subject),
+                    data(entry.who),
+                    data(entry.kind),
+                    data(entry.subject),
                     data(before),
-                    _said(after),
-                    data(e.reason),
+                    after,
+                    data(entry.reason),
                 )
             )
         self.table.fill(rows)
 
 
-def _said(after: str) -> str:
-    """In words; an opinion may have segments behind it."""
+def _in_words(after: str) -> str:
+    """Return a value in the language in use; an opinion may be followed by segments."""
     word, colon, where = after.partition(": ")
     return f"{data(word)}{colon}{where}" if after else ""

@@ -7,7 +7,7 @@ from station.panel.pages.setup.what_if_state import Values
 from station.settings.model import QualitySettings, Settings
 
 THRESHOLD, MIN_MM = "limits.{}.threshold", "limits.{}.min_mm"
-"""Keys of a kind of defect, by its name."""
+"""Keys of the limits of a kind of defect, with a place for its name."""
 FIELDS: dict[str, tuple[str, float, float]] = {
     **{THRESHOLD.format(kind.name): ("model", 0.01, 0.99) for kind in KINDS},
     **{MIN_MM.format(kind.name): ("model", 0.0, 5.0) for kind in KINDS},
@@ -16,12 +16,13 @@ FIELDS: dict[str, tuple[str, float, float]] = {
     "max_saturated_share": ("quality", 0.0, 1.0),
     "min_sharpness": ("quality", 0.0, 10.0),
 }
-"""Section, smallest and largest value of each key."""
+"""Section of the settings, minimum and maximum of each key."""
 
 
 def limits_in_use(settings: Settings) -> dict[str, float]:
-    """Return the limits of the settings, or of the model where they name none, of the kinds that the model knows.
+    """Return the limits in use for the kinds of defect that the model knows, by key.
 
+    They come from the settings, or from the model where the settings have none.
     Raises ModelError, SettingsError.
     """
     model = settings.model
@@ -36,7 +37,7 @@ def limits_in_use(settings: Settings) -> dict[str, float]:
 
 
 def thresholds_of(values: Values) -> Thresholds:
-    """Return the limits of the decision that stand in the fields."""
+    """Return the limits of the fields that decide on rejects."""
     limits = tuple(
         Limit(kind, values.limits[THRESHOLD.format(kind.name)], values.limits[MIN_MM.format(kind.name)])
         for kind in KINDS
@@ -46,11 +47,11 @@ def thresholds_of(values: Values) -> Thresholds:
 
 
 def quality_of(values: Values, settings: Settings) -> QualitySettings:
-    """Return the settings of the image quality gate with what stands in the fields."""
-    own = {key: value for key, value in values.limits.items() if FIELDS[key][0] == "quality"}
-    return settings.quality.model_copy(update=own)
+    """Return the settings of the image quality check with the limits of the fields."""
+    changed = {key: value for key, value in values.limits.items() if FIELDS[key][0] == "quality"}
+    return settings.quality.model_copy(update=changed)
 
 
 def place_of(key: str, recipe: int) -> tuple[str, ...]:
-    """Return where a key stands in the settings, from the top."""
+    """Return the place of a key in the settings, names from the top."""
     return "recipes", str(recipe), FIELDS[key][0], *key.split(".")

@@ -1,4 +1,7 @@
-"""Who is there: name and PIN, with keys for gloves; the first user of a station becomes its administrator."""
+"""The tab Login: name and PIN, with keys that can be used with gloves.
+
+The first user of a station becomes its administrator.
+"""
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QShowEvent
@@ -17,13 +20,13 @@ from station.errors import RecordError
 from station.journal.users import users
 from station.panel.look.words import data, translate
 from station.panel.pages.page import Page
-from station.panel.pages.setup.login_view import Said, login_view, said
+from station.panel.pages.setup.login_view import Notice, login_view, notice
 from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, label, titled
 
 
 class LoginPage(Page):
-    """Log in and out."""
+    """Logs users in and out."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -50,7 +53,7 @@ class LoginPage(Page):
             button = QPushButton(key)
             button.setMinimumSize(72, 56)
             button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-            button.clicked.connect(lambda _=False, k=key: self._key(k))
+            button.clicked.connect(lambda _=False, pressed=key: self._press(pressed))
             keys.addWidget(button, index // 3, index % 3)
         form.addRow(keys)
         buttons = QHBoxLayout()
@@ -72,11 +75,11 @@ class LoginPage(Page):
         self._on_user()
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
-        """Users may have come meanwhile."""
+        """Read the users again, as some may have been added meanwhile."""
         self._on_user()
         super().showEvent(event)
 
-    def _key(self, key: str) -> None:
+    def _press(self, key: str) -> None:
         if key == "⌫":
             self.pin.backspace()
         elif key == "↵":
@@ -90,7 +93,7 @@ class LoginPage(Page):
         self.log_out.setEnabled(user is not None)
         self.problem.setText("")
         self._who.setText(
-            translate("login", "nobody is logged in")
+            translate("login", "Nobody is logged in.")
             if user is None
             else f"{user.name} · {data(user.level.name.lower())}"
         )
@@ -106,11 +109,13 @@ class LoginPage(Page):
         self._hint.setText(
             translate(
                 "login",
-                "Nobody is known yet: whoever gives a name and a PIN of at least 4 digits becomes administrator.",
+                "There are no users yet. The first person to enter a name and a PIN of 4 to 12 digits "
+                "becomes administrator.",
             )
             if view.first
             else translate(
-                "login", "Watching needs no login, doing does. Five wrong PINs lock a name for a minute."
+                "login",
+                "Anyone can watch; every action needs a login. Five wrong PINs lock a user for one minute.",
             )
         )
         self.name.clear()
@@ -125,10 +130,10 @@ class LoginPage(Page):
 
     def _on_answer(self, answer: Answer) -> None:
         self.log_in.setEnabled(True)
-        if said(answer) is Said.LOCKED:
-            self.problem.setText(translate("login", "locked for a minute after five wrong PINs"))
-        elif said(answer) is Said.REFUSED:
+        if notice(answer) is Notice.LOCKED:
+            self.problem.setText(translate("login", "Locked for one minute after five wrong PINs."))
+        elif notice(answer) is Notice.REFUSED:
             self.problem.setText(data(answer.refusal))
 
     def close_page(self) -> None:
-        """Nothing runs."""
+        """Do nothing: nothing is running."""

@@ -1,4 +1,4 @@
-"""What the login page offers by the users that are known, and what it says of a refusal; pure."""
+"""What the tab Login offers, by the users of the station, and how it reports a refusal; pure."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,8 +8,8 @@ from station.channel.requests import Answer
 from station.journal.users import User
 
 
-class Said(StrEnum):
-    """What has to be said of an answer to a login."""
+class Notice(StrEnum):
+    """Kind of message that an answer to a login needs."""
 
     NOTHING = "nothing"
     LOCKED = "locked"
@@ -18,23 +18,27 @@ class Said(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class LoginView:
-    """Choices of the page."""
+    """Choices of the tab."""
 
     first: bool
-    """True if nobody is known: who logs in becomes administrator."""
+    """True if there are no users: the first to log in becomes administrator."""
     names: tuple[str, ...]
+    """Names to choose from."""
     chosen: str
-    """Name that is filled in."""
+    """Name in the field."""
 
 
 def login_view(known: Sequence[User], typed: str) -> LoginView:
-    """Return what the page offers; what was typed stays."""
+    """Return what the tab offers; a name that was typed stays."""
     names = tuple(user.name for user in known)
     return LoginView(not names, names, typed or (names[0] if names else ""))
 
 
-def said(answer: Answer) -> Said:
-    """Return what to say of an answer; the words of a lock name seconds, which age on the screen."""
+def notice(answer: Answer) -> Notice:
+    """Return which message an answer needs.
+
+    A lock has one of its own: its refusal names the seconds left, which would soon be wrong on the screen.
+    """
     if answer.done:
-        return Said.NOTHING
-    return Said.LOCKED if answer.locked_s > 0 else Said.REFUSED
+        return Notice.NOTHING
+    return Notice.LOCKED if answer.locked_s > 0 else Notice.REFUSED

@@ -1,4 +1,4 @@
-"""Masters: parts known to be good or bad, when they were judged last, when they are due, and how it went."""
+"""The tab Masters: parts of known verdict, when each was checked, with what result, and when it is due."""
 
 from datetime import UTC, datetime
 
@@ -17,10 +17,11 @@ from station.panel.widgets.card import Table, label, titled
 
 REFRESH_MS = 1500
 LOG = 200
+"""Maximum number of checks that are shown, the newest."""
 
 
 class MastersPage(FollowingPage):
-    """Follows the archive."""
+    """Shows the masters of the settings and their checks in the archive."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -28,8 +29,8 @@ class MastersPage(FollowingPage):
         self.masters = Table(
             (
                 translate("masters", "master"),
-                translate("masters", "must be"),
-                translate("masters", "was judged"),
+                translate("masters", "expected"),
+                translate("masters", "result"),
                 translate("masters", "last check"),
                 translate("masters", "due"),
                 translate("masters", "state"),
@@ -40,12 +41,12 @@ class MastersPage(FollowingPage):
             (
                 translate("masters", "time"),
                 translate("masters", "master"),
-                translate("masters", "was judged"),
+                translate("masters", "result"),
                 translate("masters", "part"),
             ),
             stretch=1,
         )
-        self.check = QPushButton(translate("masters", "Judge the chosen master"))
+        self.check = QPushButton(translate("masters", "Check chosen master"))
         self.check.clicked.connect(self._check)
         self.problem = label("", "problem", wrap=True)
         row = QHBoxLayout()
@@ -53,7 +54,8 @@ class MastersPage(FollowingPage):
             label(
                 translate(
                     "masters",
-                    "Put the master in, choose it, judge it. The PLC can ask for it too (GOLDEN_CHECK).",
+                    "Insert a master, choose it here and check it. "
+                    "The PLC can request the check too (GOLDEN_CHECK).",
                 ),
                 "quiet",
             )
@@ -64,12 +66,12 @@ class MastersPage(FollowingPage):
         column.addWidget(titled(translate("masters", "masters"), self.masters), 1)
         column.addLayout(row)
         column.addWidget(self.problem)
-        column.addWidget(titled(translate("masters", "log of the checks"), self.log), 1)
+        column.addWidget(titled(translate("masters", "past checks"), self.log), 1)
         session.account.changed.connect(self.refresh)
         self.follow(REFRESH_MS)
 
     def refresh(self) -> None:
-        """Read the checks again."""
+        """Read the checks again and show them."""
         golden = self._session.received.settings.golden
         try:
             rows = find(
@@ -85,31 +87,38 @@ class MastersPage(FollowingPage):
         }
         known = master_rows(golden.masters, golden.due_h, rows, datetime.now(UTC))
         shown = [
-            (m.serial, m.expected, m.found or "–", _local(m.checked), _local(m.due), states[m.state])
-            for m in known
+            (
+                master.serial,
+                master.expected,
+                master.found or "–",
+                _local(master.checked),
+                _local(master.due),
+                states[master.state],
+            )
+            for master in known
         ]
         self.masters.fill(shown)
         times = (datetime.fromisoformat(row.grabbed_at).astimezone() for row in rows)
         self.log.fill(
             [
-                (f"{at:%d.%m.%Y %H:%M:%S}", r.serial, _judged(r), str(r.inspection_id))
-                for at, r in zip(times, rows, strict=True)
+                (f"{at:%d.%m.%Y %H:%M:%S}", row.serial, _judged(row), str(row.inspection_id))
+                for at, row in zip(times, rows, strict=True)
             ]
         )
-        self.check.setEnabled(self._session.account.may(Level.SETTER) and bool(shown))
-        none = translate("masters", "no masters are named; write [golden.masters] into the settings file")
-        self.problem.setText(
-            none
-            if not shown
-            else ""
-            if self._session.account.may(Level.SETTER)
-            else translate("masters", "log in as setter to judge")
-        )
+        allowed, problem = self._session.account.may(Level.SETTER), ""
+        if not shown:
+            problem = translate(
+                "masters", "No masters are defined. Add [golden.masters] to the settings file."
+            )
+        elif not allowed:
+            problem = translate("masters", "Log in as setter to check masters.")
+        self.check.setEnabled(allowed and bool(shown))
+        self.problem.setText(problem)
 
     def _check(self) -> None:
         row, masters = self.masters.currentRow(), list(self._session.received.settings.golden.masters)
         if not 0 <= row < len(masters):
-            self.problem.setText(translate("masters", "choose a master first"))
+            self.problem.setText(translate("masters", "Choose a master first."))
             return
         self.check.setEnabled(False)
         self._session.account.ask(CheckMaster(masters[row]), self._on_answer, self)

@@ -1,4 +1,4 @@
-"""How the masters stand: judged when, right or wrong, due when; pure."""
+"""The state of each master: when it was checked, whether rightly judged, when it is due; pure."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,26 +9,27 @@ from station.archive.reader import Row
 
 
 class MasterState(StrEnum):
-    """What has to be said of a master."""
+    """State of a master."""
 
     UNKNOWN = "unknown"
-    """It was never judged, and need not be."""
+    """Never checked, and no check is required."""
     RIGHT = "right"
     DUE = "due"
     WRONG = "wrong"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MasterRow:
-    """One master with its last check."""
+    """A master with its last check."""
 
     serial: str
     expected: str
-    found: str | None
-    """Verdict of the last check; None: never checked."""
-    checked: datetime | None
-    due: datetime | None
-    """Time from which on it is due; None: never, or it was never checked."""
+    found: str | None = None
+    """Verdict of the last check, or None if it was never checked."""
+    checked: datetime | None = None
+    """Time of the last check."""
+    due: datetime | None = None
+    """Time of the next check, or None if none is required or it was never checked."""
     state: MasterState
 
 
@@ -38,20 +39,25 @@ def master_rows(
     checks: Sequence[Row],
     now: datetime,
 ) -> list[MasterRow]:
-    """Return all masters in the order of the settings; `checks`: the newest first."""
+    """Return all masters in the order of the settings; `checks` begin with the newest."""
     last: dict[str, Row] = {}
     for row in checks:
         last.setdefault(row.serial, row)
-    return [_row(serial, expected, due_h, last.get(serial), now) for serial, expected in masters.items()]
+    every = None if due_h is None else timedelta(hours=due_h)
+    return [
+        _row(serial, expected, last.get(serial), every=every, now=now) for serial, expected in masters.items()
+    ]
 
 
-def _row(serial: str, expected: str, due_h: float | None, check: Row | None, now: datetime) -> MasterRow:
+def _row(
+    serial: str, expected: str, check: Row | None, *, every: timedelta | None, now: datetime
+) -> MasterRow:
     if check is None:
-        state = MasterState.UNKNOWN if due_h is None else MasterState.DUE
-        return MasterRow(serial, expected, None, None, None, state)
+        state = MasterState.UNKNOWN if every is None else MasterState.DUE
+        return MasterRow(serial=serial, expected=expected, state=state)
     at = datetime.fromisoformat(check.grabbed_at)
-    due = None if due_h is None else at + timedelta(hours=due_h)
+    due = None if every is None else at + every
     late = due is not None and due < now
     wrong = check.verdict != expected
     state = MasterState.WRONG if wrong else MasterState.DUE if late else MasterState.RIGHT
-    return MasterRow(serial, expected, check.verdict, at, due, state)
+    return MasterRow(serial=serial, expected=expected, state=state, found=check.verdict, checked=at, due=due)

@@ -1,4 +1,4 @@
-"""Setting up, behind a login: one tab for each thing."""
+"""The page Setup, with one tab each for login, camera, recipe, masters, users and journal."""
 
 from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
@@ -15,7 +15,7 @@ from station.panel.widgets.card import scrolled
 
 
 class SetupPage(Page):
-    """All but the login can be looked at by everybody; changes need their level."""
+    """Shows the tabs to everybody; each change needs a login of its level."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -39,12 +39,12 @@ class SetupPage(Page):
         column.addWidget(self.tabs)
 
     def show_tab(self, page: QWidget) -> None:
-        """One of the pages above."""
+        """Show one of the tabs."""
         self.tabs.setCurrentIndex(
             (self.login, self.camera, self.recipe, self.masters, self.people, self.journal).index(page)
         )
 
     def close_page(self) -> None:
-        """All tabs."""
+        """Close all tabs."""
         for page in (self.login, self.camera, self.recipe, self.masters, self.people, self.journal):
             page.close_page()

@@ -1,4 +1,4 @@
-"""Who may log in, and at which level; for administrators."""
+"""The tab Users: who may log in, and with which level; for administrators."""
 
 from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
@@ -12,7 +12,7 @@ from station.panel.widgets.card import Choice, Table, label, titled
 
 
 class PeoplePage(Page):
-    """Add, change, remove."""
+    """Lets administrators add, change and remove users."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -31,7 +31,7 @@ class PeoplePage(Page):
         form = QFormLayout(box)
         form.addRow(translate("people", "name"), self.name)
         form.addRow(translate("people", "level"), self.level)
-        form.addRow(translate("people", "PIN, 4 to 12 digits"), self.pin)
+        form.addRow(translate("people", "PIN (4 to 12 digits)"), self.pin)
         buttons = QHBoxLayout()
         buttons.addWidget(self.save)
         buttons.addWidget(self.remove)
@@ -41,27 +41,27 @@ class PeoplePage(Page):
         right.addWidget(titled(translate("people", "add or change"), box))
         levels = translate(
             "people",
-            "operator: reviews · setter: camera, service mode, masters · quality: limits of the recipes · administrator: users.\n"
-            "Each may do what the ones before may.",
+            "Operator: reviews. Setter: camera, service mode, masters. Quality: limits of the recipes. "
+            "Administrator: users. Each level includes the levels before it.",
         )
         right.addWidget(label(levels, "quiet", wrap=True))
         right.addStretch(1)
         row = QHBoxLayout(self)
-        row.addWidget(titled(translate("people", "known users"), self.table), 1)
+        row.addWidget(titled(translate("people", "users"), self.table), 1)
         row.addLayout(right, 1)
         self.save.clicked.connect(self._save)
         self.remove.clicked.connect(self._remove)
-        self._sure = ""
-        """Whose removal was asked for once."""
-        self.name.textChanged.connect(self._unsure)
+        self._to_remove = ""
+        """Name of the user whose removal has to be confirmed, or empty."""
+        self.name.textChanged.connect(self._forget_removal)
         self.table.currentCellChanged.connect(self._on_chosen)
         session.account.changed.connect(self.pin.clear)
-        session.account.changed.connect(self._unsure)
+        session.account.changed.connect(self._forget_removal)
         session.account.changed.connect(self.refresh)
         self.refresh()
 
     def refresh(self) -> None:
-        """Read the users again."""
+        """Read the users again and show them."""
         admin = self._session.account.may(Level.ADMIN)
         for widget in (self.save, self.remove, self.name, self.level, self.pin):
             widget.setEnabled(admin)
@@ -69,7 +69,7 @@ class PeoplePage(Page):
             self.table.fill(
                 [(user.name, data(user.level.name.lower())) for user in users(self._session.received.folder)]
             )
-            self.problem.setText("" if admin else translate("people", "log in as administrator first"))
+            self.problem.setText("" if admin else translate("people", "Log in as administrator first."))
         except RecordError as error:
             self.problem.setText(str(error))
 
@@ -84,17 +84,17 @@ class PeoplePage(Page):
         self._ask(SaveUser(self.name.text().strip(), level, self.pin.text()))
         self.pin.clear()
 
-    def _unsure(self) -> None:
-        self._sure = ""
+    def _forget_removal(self) -> None:
+        self._to_remove = ""
         self.remove.setText(translate("people", "Remove"))
 
     def _remove(self) -> None:
         name = self.name.text().strip()
-        if self._sure != name:
-            self._sure = name
+        if self._to_remove != name:
+            self._to_remove = name
             self.remove.setText(translate("people", "Really remove?"))
             return
-        self._unsure()
+        self._forget_removal()
         self._ask(RemoveUser(name))
 
     def _ask(self, request: SaveUser | RemoveUser) -> None:
@@ -110,4 +110,4 @@ class PeoplePage(Page):
             self.problem.setText(data(answer.refusal))
 
     def close_page(self) -> None:
-        """Nothing runs."""
+        """Do nothing: nothing is running."""

@@ -1,4 +1,8 @@
-"""Limits of a recipe: what they would have done to the parts of the archive is shown before they can be saved, with a reason."""
+"""The tab Recipe: limits of a recipe.
+
+They can be saved, with a reason, once a what-if has shown how they would have changed the verdicts of
+the archive.
+"""
 
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
@@ -24,19 +28,20 @@ from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState
 from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, Table, label, titled
 from station.panel.widgets.field import NumberField, SegmentLimits
-from station.panel.widgets.work import Progress, WorkBar
+from station.panel.widgets.progress import Progress
+from station.panel.widgets.work import WorkBar
 from station.settings.model import for_recipe
 
 
 class RecipePage(Page):
-    """Thresholds and limits of picture quality."""
+    """Shows and changes thresholds, minimum lengths and limits of the image quality."""
 
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
         self._state = WhatIfState()
         self._saving = False
-        """Whether the engine has not yet answered to what was saved here."""
+        """True while the engine has not answered to a change that was made here."""
         self.recipe = Choice()
         word = translate("recipe", "recipe")
         for number in sorted({1, *session.received.settings.recipes}):
@@ -48,31 +53,35 @@ class RecipePage(Page):
         names = {
             **{THRESHOLD.format(kind.name): threshold.format(kind=data(kind.reason)) for kind in KINDS},
             **{MIN_MM.format(kind.name): length.format(kind=data(kind.reason)) for kind in KINDS},
-            "min_mean_dn": translate("recipe", "least brightness"),
-            "max_dark_share": translate("recipe", "greatest dark share"),
-            "max_saturated_share": translate("recipe", "greatest saturated share"),
-            "min_sharpness": translate("recipe", "least sharpness"),
+            "min_mean_dn": translate("recipe", "minimum brightness"),
+            "max_dark_share": translate("recipe", "maximum dark fraction"),
+            "max_saturated_share": translate("recipe", "maximum saturated fraction"),
+            "min_sharpness": translate("recipe", "minimum sharpness"),
         }
         self.fields = {key: NumberField(low, high) for key, (_, low, high) in FIELDS.items()}
         self._names: dict[str, QLabel] = {}
         self.segments = SegmentLimits()
-        self.segments.changed.connect(self._look)
+        self.segments.changed.connect(self._refresh_buttons)
         heads = (
             translate("recipe", "part"),
             translate("recipe", "serial"),
-            translate("recipe", "was"),
-            translate("recipe", "would be"),
+            translate("recipe", "before"),
+            translate("recipe", "after"),
             translate("recipe", "segment"),
             translate("recipe", "score"),
         )
-        self.released, self.refused = Table(heads, stretch=1), Table(heads, stretch=1)
+        self.released, self.rejected = Table(heads, stretch=1), Table(heads, stretch=1)
         self.ask, self.save = (
             QPushButton(translate("recipe", "What if?")),
             QPushButton(translate("recipe", "Save")),
         )
         self.reason = QLineEdit()
-        self.reason.setPlaceholderText(translate("recipe", "reason (needed)"))
-        self.said, self.problem, self._work = label("", "title"), label("", "problem", wrap=True), WorkBar()
+        self.reason.setPlaceholderText(translate("recipe", "reason (required)"))
+        self.message, self.problem, self._work = (
+            label("", "title"),
+            label("", "problem", wrap=True),
+            WorkBar(),
+        )
         box = QWidget()
         form = QGridLayout(box)
         form.setVerticalSpacing(2)
@@ -81,16 +90,16 @@ class RecipePage(Page):
             self._names[key] = label(name)
             form.addWidget(self._names[key], place, 0)
             form.addWidget(self.fields[key], place, 1)
-            self.fields[key].changed.connect(self._look)
-        form.addWidget(label(translate("recipe", "limits of single segments")), len(names) + 1, 0)
+            self.fields[key].changed.connect(self._refresh_buttons)
+        form.addWidget(label(translate("recipe", "thresholds of single segments")), len(names) + 1, 0)
         form.addWidget(self.segments, len(names) + 1, 1)
         right = QVBoxLayout()
-        right.addWidget(self.said)
+        right.addWidget(self.message)
         right.addWidget(
-            titled(translate("recipe", "would be released (NOK → OK): possible escapes"), self.released), 1
+            titled(translate("recipe", "released parts (NOK → OK): possible escapes"), self.released), 1
         )
         right.addWidget(
-            titled(translate("recipe", "would be refused (OK → NOK): possible false calls"), self.refused), 1
+            titled(translate("recipe", "rejected parts (OK → NOK): possible false rejects"), self.rejected), 1
         )
         below = QHBoxLayout()
         for widget, stretch in ((self.ask, 0), (self.reason, 1), (self.save, 0)):
@@ -106,17 +115,17 @@ class RecipePage(Page):
         row.addLayout(right, 3)
         self.ask.clicked.connect(self._ask)
         self.save.clicked.connect(self._save)
-        self.reason.textChanged.connect(self._look)
+        self.reason.textChanged.connect(self._refresh_buttons)
         self.recipe.currentIndexChanged.connect(self._fill)
         self._work.failed.connect(self.problem.setText)
         session.account.changed.connect(self._on_user)
         session.received.settings_changed.connect(self._on_settings)
         session.change.used.connect(self._on_used)
         session.change.refused.connect(self._on_refused)
-        session.change.asked.connect(self._look)
+        session.change.asked.connect(self._refresh_buttons)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
-        """The limits of a model are in its file: loaded once they are looked at."""
+        """Load the limits when they are first shown: those of a model are in its file."""
         if self._state.in_use is None:
             self._fill()
         super().showEvent(event)
@@ -126,7 +135,7 @@ class RecipePage(Page):
             self._fill()
 
     def _fill(self) -> None:
-        """The limits in use."""
+        """Show the limits in use."""
         number = int(self.recipe.currentData())
         settings = for_recipe(self._session.received.settings, number)
         try:
@@ -143,10 +152,10 @@ class RecipePage(Page):
                 field.set(self._state.in_use.limits[key])
             for widget in (field, self._names[key]):
                 widget.setVisible(known)
-        self._look()
+        self._refresh_buttons()
 
     def values(self) -> Values | None:
-        """What stands in the fields; None if something is not allowed."""
+        """Return the limits in the fields, or None if one of them is not allowed."""
         used = self._state.in_use
         keys = FIELDS if used is None else used.limits
         numbers = {key: value for key in keys if (value := self.fields[key].value) is not None}
@@ -158,21 +167,21 @@ class RecipePage(Page):
         )
 
     def _on_user(self) -> None:
-        """What one has typed and seen is not for the next."""
+        """Forget what was typed and asked: another user is logged in, or none."""
         self._work.cancel()
         self._saving = False
         self.reason.clear()
         self._forget()
-        self._look()
+        self._refresh_buttons()
 
     def _forget(self) -> None:
-        """What other values would have done."""
+        """Remove the what-if that is shown."""
         self._state.asked = None
-        self.said.setText("")
-        for table in (self.released, self.refused):
+        self.message.setText("")
+        for table in (self.released, self.rejected):
             table.fill(())
 
-    def _look(self) -> None:
+    def _refresh_buttons(self) -> None:
         values = self.values()
         if self._state.asked is not None and values != self._state.asked:
             self._forget()
@@ -184,10 +193,10 @@ class RecipePage(Page):
         )
         self.save.setEnabled(missing is Missing.NOTHING)
         hints = {
-            Missing.LOGIN: translate("recipe", "log in as quality to save"),
-            Missing.QUESTION: translate("recipe", "ask what if before saving"),
-            Missing.REASON: translate("recipe", "a reason is needed"),
-            Missing.ANSWER: translate("recipe", "waiting for the engine"),
+            Missing.LOGIN: translate("recipe", "Log in as quality to save."),
+            Missing.QUESTION: translate("recipe", "Run the what-if before saving."),
+            Missing.REASON: translate("recipe", "A reason is required."),
+            Missing.ANSWER: translate("recipe", "Waiting for the engine..."),
         }
         self.save.setToolTip(hints.get(missing, ""))
 
@@ -199,59 +208,61 @@ class RecipePage(Page):
         thresholds, quality = thresholds_of(values), quality_of(values, settings)
 
         def work(progress: Progress) -> tuple[Values, WhatIf, int] | None:
-            judge = Classifier(settings.model.path, 1).card.file_hash
-            found = scored_records(folder, values.recipe, judge, progress)
+            model_hash = Classifier(settings.model.path, 1).card.file_hash
+            found = scored_records(folder, values.recipe, model_hash, progress)
             return None if found is None else (values, what_if(found[0], thresholds, quality), found[1])
 
-        self._work.start(translate("recipe", "scoring the archive again"), work, self._on_done)
-        self._look()
+        self._work.start(translate("recipe", "Judging the archive again"), work, self._on_done)
+        self._refresh_buttons()
 
-    def _on_done(self, answer: tuple[Values, WhatIf, int]) -> None:
-        values, found, left_out = answer
+    def _on_done(self, result: tuple[Values, WhatIf, int]) -> None:
+        values, found, left_out = result
         if values != self.values():
-            self._look()
+            self._refresh_buttons()
             return
         self._state.asked = values
-        for table, flips in ((self.released, found.released), (self.refused, found.refused)):
+        for table, flips in ((self.released, found.released), (self.rejected, found.refused)):
             rows = [
                 (
-                    str(f.inspection_id),
-                    f.serial,
-                    str(f.before),
-                    str(f.after),
-                    str(f.segment),
-                    f"{f.score:.3f}",
+                    str(flip.inspection_id),
+                    flip.serial,
+                    str(flip.before),
+                    str(flip.after),
+                    str(flip.segment),
+                    f"{flip.score:.3f}",
                 )
-                for f in flips
+                for flip in flips
             ]
             table.fill(rows)
-        self.said.setText(
-            translate("recipe", "{n} parts: {released} would be released, {refused} refused").format(
-                n=found.looked_at, released=len(found.released), refused=len(found.refused)
+        self.message.setText(
+            translate("recipe", "{n} parts: {released} would be released, {rejected} rejected").format(
+                n=found.looked_at, released=len(found.released), rejected=len(found.refused)
             )
         )
         unknown = translate(
-            "recipe", "{n} parts that were too poor would be judged: nobody knows how"
+            "recipe", "{n} images of insufficient quality would now be judged; their verdict is unknown."
         ).format(n=found.unknown)
-        none = translate("recipe", "no part of this recipe in the archive: nobody knows what the limits do")
-        others = translate("recipe", "{n} parts of another model, or unreadable, were left out").format(
-            n=left_out
+        none = translate(
+            "recipe", "The archive has no parts of this recipe, so the effect of the limits is unknown."
         )
-        known = [text for text, told in ((unknown, found.unknown), (others, left_out)) if told]
-        self.problem.setText(none if not found.looked_at else "; ".join(known))
-        self._look()
+        others = translate(
+            "recipe", "{n} parts were left out: judged by another model or not readable."
+        ).format(n=left_out)
+        notes = [text for text, count in ((unknown, found.unknown), (others, left_out)) if count]
+        self.problem.setText(none if not found.looked_at else " ".join(notes))
+        self._refresh_buttons()
 
     def _save(self) -> None:
         values, used = self.values(), self._state.in_use
         if values is None or used is None:
             return
         before = used.rounded().limits
-        new: list[Changed] = []
+        changes: list[Changed] = []
         for key, value in values.limits.items():
             if value != before[key]:
-                new.append(Changed(place_of(key, values.recipe), value, used.limits[key]))
+                changes.append(Changed(place_of(key, values.recipe), value, used.limits[key]))
         if values.segments != used.segments:
-            new.append(
+            changes.append(
                 Changed(
                     ("recipes", str(values.recipe), "model", "segment_thresholds"),
                     values.segments,
@@ -261,26 +272,26 @@ class RecipePage(Page):
         self._saving = True
         self.problem.setText("")
         self._forget()
-        self.said.setText(translate("recipe", "waiting for the engine"))
-        self._session.change.make(new, self.reason.text())
+        self.message.setText(translate("recipe", "Waiting for the engine..."))
+        self._session.change.make(changes, self.reason.text())
 
     def _on_used(self) -> None:
         if self._saving:
             self._saving = False
             self.reason.clear()
             self._fill()
-            self.said.setText(translate("recipe", "saved and in use"))
-        self._look()
+            self.message.setText(translate("recipe", "Saved and in use."))
+        self._refresh_buttons()
 
     def _on_refused(self, why: str) -> None:
         if self._saving:
             self._saving = False
             self._fill()
-            self.said.setText("")
-            nothing = translate("recipe", "nothing was changed:")
+            self.message.setText("")
+            nothing = translate("recipe", "Nothing was changed:")
             self.problem.setText(f"{nothing} {data(why)}")
-        self._look()
+        self._refresh_buttons()
 
     def close_page(self) -> None:
-        """Nothing is left running."""
+        """Stop the work."""
         self._work.close_work()

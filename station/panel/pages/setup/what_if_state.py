@@ -1,35 +1,35 @@
-"""When other limits may be saved: after what they would have done was asked, and with a reason; pure."""
+"""Decides when other limits can be saved: after a what-if and with a reason; pure."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
 from station.archive.reader import Wanted, find, read_words
 from station.channel.requests import MIN_REASON
+from station.panel.widgets.progress import Progress
 from station.records import Record
 
 PARTS = 5000
-"""The newest parts that are scored again."""
+"""Maximum number of the newest parts that are judged with other limits."""
 
 
 @dataclass(frozen=True, slots=True)
 class Values:
-    """Limits of one recipe, as they stand in the fields."""
+    """Limits of one recipe, as the fields show them."""
 
     recipe: int
     limits: dict[str, float]
-    """By key."""
+    """Values by key, see `limit_fields.FIELDS`."""
     segments: dict[int, float] = field(default_factory=dict)
-    """By number."""
+    """Thresholds of single segments by number."""
 
     def rounded(self) -> "Values":
-        """Return them as the fields show them."""
+        """Return the limits rounded as the fields show them."""
         return replace(self, limits={key: float(f"{value:.6g}") for key, value in self.limits.items()})
 
 
 class Missing(StrEnum):
-    """What is still needed before limits can be saved."""
+    """Condition that must be met before limits can be saved."""
 
     NOTHING = "nothing"
     CHANGE = "a change"
@@ -40,21 +40,22 @@ class Missing(StrEnum):
 
 
 class WhatIfState:
-    """Knows the limits in use and those of the what-if that is shown."""
+    """Holds the limits in use and those of the what-if that is shown."""
 
     def __init__(self) -> None:
         self.in_use: Values | None = None
+        """Limits in use, or None if they are not yet known."""
         self.asked: Values | None = None
-        """Values of the what-if that is shown."""
+        """Limits of the what-if that is shown, or None."""
 
     def changed(self, values: Values | None) -> bool:
-        """Return whether these are other limits than those in use."""
+        """Return whether these limits differ from those in use."""
         return self.in_use is not None and values is not None and values != self.in_use.rounded()
 
     def missing(self, values: Values | None, reason: str, allowed: bool, waiting: bool) -> Missing:
-        """Return what is needed first before these limits can be saved.
+        """Return the first condition that is not met before these limits can be saved.
 
-        `allowed`: whether who is logged in may; `waiting`: whether the engine makes a change just now.
+        `allowed`: the user has the level for it; `waiting`: the engine is making a change.
         """
         if not allowed:
             return Missing.LOGIN
@@ -67,16 +68,13 @@ class WhatIfState:
         return Missing.ANSWER if waiting else Missing.NOTHING
 
 
-Progress = Callable[[int, int], bool]
-"""Called with how much is done of how much; returns False if the work was cancelled."""
-
-
 def scored_records(
-    folder: Path, recipe: int, judge: str, progress: Progress
+    folder: Path, recipe: int, model_hash: str, progress: Progress
 ) -> tuple[list[Record], int] | None:
-    """Return the newest records of a recipe that one model has scored, and how many were left out.
+    """Return the newest records of a recipe that one model has judged, and how many were left out.
 
-    `judge`: hash of the model; scores of another one say nothing. None if it was cancelled. Raises RecordError.
+    `model_hash` names the model: scores of others cannot be compared. Return None if cancelled.
+    Raises RecordError.
     """
     rows = find(folder, Wanted(recipe=recipe, newest_first=True, limit=PARTS))
     records = list[Record]()
@@ -84,6 +82,6 @@ def scored_records(
         if count % 20 == 0 and not progress(count, len(rows)):
             return None
         record, _ = read_words(folder, row)
-        if record is not None and record.provenance.model_hash == judge:
+        if record is not None and record.provenance.model_hash == model_hash:
             records.append(record)
     return records, len(rows) - len(records)

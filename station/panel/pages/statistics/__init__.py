@@ -1,1 +1,1 @@
-"""Yield, counts and trends."""
+"""The page Statistics: yield, counts and trends."""

@@ -1,4 +1,4 @@
-"""Shows yield and counts by shift and recipe, where and what was found, trends with limits, cycle times."""
+"""The page Statistics: yield by shift and recipe, defects by angle and reason, trends with limits, times."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,12 +19,14 @@ from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, Table, label, titled
 from station.panel.widgets.charts import Chart
 from station.panel.widgets.dialogs import ask_file
+from station.panel.widgets.progress import Progress
 from station.panel.widgets.weld.clock_face import ClockFace
-from station.panel.widgets.work import Progress, WorkBar
+from station.panel.widgets.work import WorkBar
 from station.records import Record
 from station.settings.model import for_recipe
 
 PARTS = (100, 300, 1000, 5000)
+"""Numbers of the newest parts to choose from."""
 
 
 class StatisticsPage(Page):
@@ -46,7 +48,7 @@ class StatisticsPage(Page):
             stretch=0,
         )
         self._lay_out()
-        self._work.failed.connect(self._problem.setText)
+        self._work.failed.connect(self.problem.setText)
         self.how_many.currentIndexChanged.connect(self.read)
         session.account.changed.connect(self._on_user)
         self._on_user()
@@ -61,27 +63,29 @@ class StatisticsPage(Page):
         for count in PARTS:
             self.how_many.addItem(f"{last} {count}", count)
         self.how_many.setCurrentIndex(1)
-        self.again, self.report = (
-            QPushButton(translate("statistics", "Read again")),
+        self.read_again, self.report = (
+            QPushButton(translate("statistics", "Refresh")),
             QPushButton(translate("statistics", "Report…")),
         )
-        self.again.clicked.connect(self.read)
+        self.read_again.clicked.connect(self.read)
         self.report.clicked.connect(self._ask_report)
-        self._work, self._problem, self._said = WorkBar(), label("", "problem"), label("", "quiet")
-        self.zero = QPushButton(translate("statistics", "Counters to 0"))
+        self._work, self.problem, self._message = WorkBar(), label("", "problem"), label("", "quiet")
+        self.zero = QPushButton(translate("statistics", "Reset counters"))
         self.zero.setToolTip(
-            translate("statistics", "the counters of the page Live and of the PLC; noted in the journal")
+            translate(
+                "statistics", "Set the counters of the page Live and of the PLC to 0. The journal records it."
+            )
         )
         self.zero.clicked.connect(self._reset)
         top = QHBoxLayout()
-        for widget in (self.how_many, self.again, self.report, self.zero, self._problem, self._said):
+        for widget in (self.how_many, self.read_again, self.report, self.zero, self.problem, self._message):
             top.addWidget(widget)
         top.addStretch(1)
         self.clock = ClockFace()
         self.reasons = Chart(translate("statistics", "reasons"))
         grey_levels = translate("statistics", "grey levels")
         self.trends = {
-            "worst": Chart(translate("statistics", "worst score of each part")),
+            "worst": Chart(translate("statistics", "worst score of a part")),
             "mean_dn": Chart(translate("statistics", "mean brightness"), grey_levels),
             "sharpness": Chart(translate("statistics", "sharpness")),
             "saturated": Chart(translate("statistics", "saturated fraction")),
@@ -92,10 +96,10 @@ class StatisticsPage(Page):
         grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 6)
         grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 6, 1, 3)
         grid.addWidget(self.reasons, 0, 9, 1, 3)
-        t = self.trends
-        for index, chart in enumerate(
-            (t["worst"], t["mean_dn"], t["sharpness"], self.cycle, t["saturated"], t["novelty"])
-        ):
+        trends = self.trends
+        upper = (trends["worst"], trends["mean_dn"], trends["sharpness"])
+        lower = (self.cycle, trends["saturated"], trends["novelty"])
+        for index, chart in enumerate((*upper, *lower)):
             row, column = divmod(index, 3)
             grid.addWidget(chart, 1 + row, 4 * column, 1, 4)
         for column in range(12):
@@ -111,7 +115,7 @@ class StatisticsPage(Page):
         hint = (
             ""
             if self._session.account.may(Level.OPERATOR)
-            else translate("statistics", "log in first (page Setup)")
+            else translate("statistics", "Log in first (page Setup).")
         )
         self.report.setEnabled(not hint)
         self.report.setToolTip(hint)
@@ -122,7 +126,7 @@ class StatisticsPage(Page):
         self._session.account.ask(ResetCounts(), self._on_reset, self)
 
     def _on_reset(self, answer: Answer) -> None:
-        self._problem.setText(data(answer.refusal) if answer.refusal else "")
+        self.problem.setText(data(answer.refusal) if answer.refusal else "")
         self._on_user()
 
     def _when_seen(self) -> None:
@@ -131,43 +135,51 @@ class StatisticsPage(Page):
             self.read()
 
     def read(self) -> None:
-        """Read the records of the chosen parts next to the window, and show them."""
+        """Read the records of the chosen number of parts next to the window and show them."""
         folder, limit = self._session.received.folder, int(self.how_many.currentData())
-        title = translate("statistics", "reading records")
+        title = translate("statistics", "Reading records")
         self._work.start(title, lambda progress: summarise(_records(folder, limit, progress)), self._show)
 
     def _show(self, summary: Summary) -> None:
         self.summary = summary
-        self._problem.setText("" if summary.points else translate("statistics", "no parts yet"))
+        self.problem.setText("" if summary.points else translate("statistics", "No parts yet."))
         self.groups.fill(
             [
-                (g.shift, str(g.recipe), str(g.ok), str(g.nok), str(g.error), f"{g.yield_share:.1%}")
-                for g in summary.groups
+                (
+                    group.shift,
+                    str(group.recipe),
+                    str(group.ok),
+                    str(group.nok),
+                    str(group.error),
+                    f"{group.yield_share:.1%}",
+                )
+                for group in summary.groups
             ]
         )
         self.clock.show_counts(summary.segments)
         self.reasons.show_bars([(data(name), count) for name, count in summary.reasons[:5]])
-        bad = [p.verdict is not Verdict.OK for p in summary.points]
+        bad = [point.verdict is not Verdict.OK for point in summary.points]
         status = self._session.received.status
-        s = for_recipe(self._session.received.settings, 1 if status is None else status.recipe)
+        recipe = 1 if status is None else status.recipe
+        quality = for_recipe(self._session.received.settings, recipe).quality
         limits: dict[str, list[float]] = {
             "worst": list(summary.thresholds),
-            "mean_dn": [s.quality.min_mean_dn],
-            "sharpness": [s.quality.min_sharpness],
-            "saturated": [s.quality.max_saturated_share],
+            "mean_dn": [quality.min_mean_dn],
+            "sharpness": [quality.min_sharpness],
+            "saturated": [quality.max_saturated_share],
             "novelty": [],
         }
         for key, chart in self.trends.items():
-            chart.show_trend([getattr(p, key) for p in summary.points], bad, limits[key])
-        self.cycle.show_histogram([p.cycle_ms for p in summary.points])
+            chart.show_trend([getattr(point, key) for point in summary.points], bad, limits[key])
+        self.cycle.show_histogram([point.cycle_ms for point in summary.points])
 
     def _ask_report(self) -> None:
-        path = ask_file(self, self._session, translate("statistics", "Report"), "report.html")
+        path = ask_file(self, self._session, translate("statistics", "Report file"), "report.html")
         if path is not None:
             self.write_report(path)
 
     def write_report(self, target: Path) -> None:
-        """Write a report on the chosen parts next to the window, as one HTML file."""
+        """Write a report on the chosen number of parts as one HTML file, next to the window."""
         folder, limit = self._session.received.folder, int(self.how_many.currentData())
 
         def work(progress: Progress) -> str | None:
@@ -179,7 +191,7 @@ class StatisticsPage(Page):
             target.write_text(report(entries[::-1], folder, "weldgate"), encoding="utf-8")
             return str(target)
 
-        self._work.start(translate("statistics", "report"), work, self._said.setText)
+        self._work.start(translate("statistics", "Writing the report"), work, self._message.setText)
 
     def close_page(self) -> None:
         """Stop timer and work."""

@@ -1,1 +1,1 @@
-"""Pictures of a weld: ring, strip, angles; of what was just seen and of kept records."""
+"""Views of a weld: image with ring, strip, clock face; of the part just inspected and of recorded parts."""
