@@ -1,6 +1,6 @@
-"""Every page of the window in both languages and both themes, from a demo run of the real station.
+"""Writes images of all pages of the window, in both languages and themes, from a demo run of the station.
 
-Run under a display; `make screenshots` brings its own (Xvfb).
+It needs a display; `make screenshots` brings its own (Xvfb).
 """
 
 import argparse
@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from itertools import cycle
 from pathlib import Path
 from threading import Thread
 
@@ -33,6 +34,8 @@ from station.panel.window import Window
 from station.plc.simulated.line import SimulatedLine
 from synth.camera.feed import Feed
 
+NOK_PLACES = (3, 7, 10)
+"""Places of the NOK parts among `PARTS`; the last part, which is NOK too, comes after them."""
 PARTS = 12
 VIEWS: tuple[tuple[str, PageKey, int], ...] = (
     ("live", PageKey.LIVE, 0),
@@ -49,29 +52,41 @@ VIEWS: tuple[tuple[str, PageKey, int], ...] = (
     ("setup-journal", PageKey.SETUP, 5),
     ("replay", PageKey.REPLAY, 0),
 )
+"""Views by name: page and number of its tab."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Write PNG files; 0 if all were written."""
+    """Write the images as PNG files. Return 0 if all were written."""
     parser = argparse.ArgumentParser(prog="screenshots", description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("screenshots"), help="default: %(default)s")
-    parser.add_argument("--size", default="1280x800", metavar="WxH", help="default: %(default)s")
     parser.add_argument(
-        "--views", nargs="+", choices=[name for name, _, _ in VIEWS], default=[name for name, _, _ in VIEWS]
+        "--out", type=Path, default=Path("screenshots"), help="write into this folder (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--size",
+        default="1280x800",
+        metavar="WxH",
+        help="show the window in this size (default: %(default)s)",
+    )
+    names = [name for name, _, _ in VIEWS]
+    parser.add_argument(
+        "--views", nargs="+", choices=names, default=names, help="write these views only (default: all)"
     )
     arguments = parser.parse_args(argv)
     width, height = (int(number) for number in arguments.size.split("x"))
     arguments.out.mkdir(parents=True, exist_ok=True)
     app = QApplication.instance() or QApplication(sys.argv[:1])  # noqa: F841 - must live
-    with tempfile.TemporaryDirectory(prefix="weldgate-") as name, _station(Path(name)) as (settings, drive):
+    with (
+        tempfile.TemporaryDirectory(prefix="weldgate-") as name,
+        _station(Path(name)) as (settings, pass_parts),
+    ):
         window = open_window(settings)
         window.resize(width, height)
         window.show()
-        _people(window)
-        line = Thread(target=drive)
+        _save_users(window)
+        line = Thread(target=pass_parts)
         line.start()
-        _wait(line.is_alive, still=True)
-        _reviews(window)
+        _wait(lambda: not line.is_alive())
+        _give_reviews(window)
         for theme in ("dark", "light"):
             for language in ("en", "de"):
                 window.dress(theme)
@@ -87,7 +102,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _station(folder: Path) -> Iterator[tuple[Path, Callable[[], None]]]:
-    """An engine in its own process; its settings, and what passes parts through it."""
+    """Run an engine in its own process; yield its settings file and a function that passes parts."""
     feed, ports = Feed(folder / "feed"), free_ports(4)
     settings = folder / "station.toml"
     settings.write_text(
@@ -97,27 +112,28 @@ def _station(folder: Path) -> Iterator[tuple[Path, Callable[[], None]]]:
     command = [sys.executable, "-m", "station", "engine", "-c", str(settings)]
     with (folder / "engine.log").open("w") as log, running(command, {**os.environ, **feed.environment}, log):
 
-        async def parts() -> None:
+        async def inspect_parts() -> None:
             line = SimulatedLine.at("127.0.0.1", ports[0], accept_simulated=True)
             await line.connect()
             shipped = shipped_parts()
-            order = [shipped[i % len(shipped)] for i in range(PARTS)]
-            nok = next(part for part in shipped if part.truth != "OK")
-            masters = [("MASTER-OK", next(part for part in shipped if part.truth == "OK"), True)]
-            for serial, part, golden in [
-                *masters,
-                *((f"CELL-{i:05d}", p, False) for i, p in enumerate(order, 1)),
-                ("CELL-00013", nok, False),
-            ]:
+            ok = next(part for part in shipped if part.truth == "OK")
+            nok = [part for part in shipped if part.truth != "OK"]
+            order = [ok] * PARTS
+            for place, part in zip(NOK_PLACES, cycle(nok[1:]), strict=False):
+                order[place] = part
+            serials = [f"CELL-{number:05d}" for number in range(1, PARTS + 2)]
+            masters = [("MASTER-OK", ok, True), ("MASTER-NOK", nok[0], True)]
+            parts = [(serial, part, False) for serial, part in zip(serials, [*order, nok[0]], strict=True)]
+            for serial, part, golden in [*masters, *parts]:
                 feed.show(np.asarray(cv2.imread(str(part.path), cv2.IMREAD_GRAYSCALE), np.uint8))
                 await line.inspect(serial, golden=golden)
                 await line.meanwhile(asyncio.sleep(0.15))
             await line.close()
 
-        yield settings, lambda: asyncio.run(parts())
+        yield settings, lambda: asyncio.run(inspect_parts())
 
 
-def _people(window: Window) -> None:
+def _save_users(window: Window) -> None:
     folder = window.session.received.folder
     _wait(lambda: folder.is_dir())
     for name, level, pin in (
@@ -128,12 +144,11 @@ def _people(window: Window) -> None:
         save_user(folder, "Ada Admin", name, level, pin)
 
 
-def _reviews(window: Window) -> None:
-    folder, nok = (
-        window.session.received.folder,
-        [part.record for part in window.session.received.parts if part.record.verdict == "NOK"],
-    )
-    for number in [record.inspection_id for record in nok[-2:]]:
+def _give_reviews(window: Window) -> None:
+    received = window.session.received
+    folder = received.folder
+    nok = [part.record.inspection_id for part in received.parts if part.record.verdict == "NOK"]
+    for number in nok[-2:]:
         give(
             folder,
             "Quentin Quality",
@@ -147,7 +162,7 @@ def _reviews(window: Window) -> None:
 
 
 def _show(window: Window, view: str, page: PageKey, tab: int) -> None:
-    """Bring a page to where it has something to show."""
+    """Show a page, with something on it to see."""
     window.go(page)
     session = window.session
     if view.startswith("setup") and session.account.user is None and view != "setup-login":
@@ -175,7 +190,7 @@ def _show(window: Window, view: str, page: PageKey, tab: int) -> None:
         recipe.fields["limits.hole.min_mm"].set(1.5)
         recipe.segments.set({2: 0.02})
         recipe.ask.click()
-        _wait(lambda: bool(recipe.message.text()))
+        _wait(lambda: recipe.released.rowCount() > 0)
     _pause(0.6)
     if view == "setup-camera":
         session.service.end()
@@ -183,27 +198,25 @@ def _show(window: Window, view: str, page: PageKey, tab: int) -> None:
 
 
 def _save(window: Window, path: Path) -> None:
-    picture = window.grab().toImage().convertToFormat(QImage.Format.Format_RGB888)  # must outlive its pixels
-    pixels = np.frombuffer(picture.constBits(), np.uint8)
-    rows = pixels.reshape(picture.height(), -1)[:, : picture.width() * 3].reshape(
-        picture.height(), picture.width(), 3
+    image = window.grab().toImage().convertToFormat(QImage.Format.Format_RGB888)  # must outlive its pixels
+    pixels = np.frombuffer(image.constBits(), np.uint8)
+    rows = pixels.reshape(image.height(), -1)[:, : image.width() * 3].reshape(
+        image.height(), image.width(), 3
     )
     cv2.imwrite(str(path), np.ascontiguousarray(rows[:, :, ::-1]), [cv2.IMWRITE_PNG_COMPRESSION, 9])
 
 
-def _wait(until: Callable[[], bool], still: bool = False, patience_s: float = 60.0) -> None:
-    """Let the window live until something is so, or, `still`, no longer so."""
-    end = time.monotonic() + patience_s
-    while until() is still:
-        if time.monotonic() > end:
-            raise TimeoutError("the demo run did not come so far")
+def _wait(condition: Callable[[], bool], patience_s: float = 60.0) -> None:
+    """Run the event loop of the window until a condition holds. Raises TimeoutError."""
+    end_s = time.monotonic() + patience_s
+    while not condition():
+        if time.monotonic() > end_s:
+            raise TimeoutError("The demo run has not got this far in time.")
         _pause(0.05)
 
 
 def _pause(seconds: float) -> None:
-    loop = (
-        QEventLoop()
-    )  # not QApplication.processEvents: in PySide6 6.12 it drops a reference to None each time
+    loop = QEventLoop()  # PySide6 6.12: each QApplication.processEvents drops a reference to None
     QTimer.singleShot(int(seconds * 1000), loop.quit)
     loop.exec()
 

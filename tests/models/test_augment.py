@@ -24,7 +24,10 @@ def test_form_and_range_are_kept_and_all_is_drawn_from_the_generator() -> None:
 def test_the_map_moves_with_the_image() -> None:
     made = crops(60)
     defects = made.pick(made.labels > 0)
-    images, maps = torch.from_numpy(defects.images)[:, None].float(), torch.from_numpy(defects.maps).float() / 255
+    images, maps = (
+        torch.from_numpy(defects.images)[:, None].float(),
+        torch.from_numpy(defects.maps).float() / 255,
+    )
     moved, where = augment(images, maps, torch.Generator().manual_seed(0))
     darker = 0
     for image, map_ in zip(moved.numpy()[:, 0], where.numpy(), strict=True):

@@ -17,7 +17,7 @@
     </message>
     <message>
         <source>what to do</source>
-        <translation>was zu tun ist</translation>
+        <translation>Maßnahme</translation>
     </message>
     <message>
         <source>active</source>
@@ -84,7 +84,7 @@
     </message>
     <message>
         <source>ring residual (px) · support</source>
-        <translation>Ringabweichung (px) · Abdeckung</translation>
+        <translation>Ringabweichung (px) · Anteil</translation>
     </message>
     <message>
         <source>exposure</source>
@@ -772,16 +772,16 @@
         <translation>Segment</translation>
     </message>
     <message>
+        <source>A serial, or a prefix followed by *</source>
+        <translation>Eine Seriennummer oder ihr Anfang und *</translation>
+    </message>
+    <message>
         <source>any time</source>
         <translation>jede Zeit</translation>
     </message>
     <message>
         <source>from</source>
         <translation>von</translation>
-    </message>
-    <message>
-        <source>serial, or prefix and *</source>
-        <translation>Seriennummer oder Anfang und *</translation>
     </message>
     <message>
         <source>to</source>
@@ -822,6 +822,14 @@
     <message>
         <source>Gallery</source>
         <translation>Galerie</translation>
+    </message>
+    <message>
+        <source>newest {n} parts</source>
+        <translation>neueste {n} Teile</translation>
+    </message>
+    <message>
+        <source>{n} parts</source>
+        <translation>{n} Teile</translation>
     </message>
     <message>
         <source>Reading images</source>
@@ -878,10 +886,6 @@
     <message>
         <source>Export reviewed…</source>
         <translation>Nachgeprüfte exportieren…</translation>
-    </message>
-    <message>
-        <source>the newest 300</source>
-        <translation>die neuesten 300</translation>
     </message>
     <message>
         <source>log in to review</source>
@@ -1110,10 +1114,6 @@
         <translation>kein Bit</translation>
     </message>
     <message>
-        <source>station</source>
-        <translation>Station</translation>
-    </message>
-    <message>
         <source>set one bit of STATUS by hand:</source>
         <translation>ein Bit von STATUS von Hand setzen:</translation>
     </message>
@@ -1142,7 +1142,7 @@
     </message>
     <message>
         <source>not judged</source>
-        <translation>nicht beurteilt</translation>
+        <translation>ohne Urteil</translation>
     </message>
     <message>
         <source>yield</source>
@@ -1639,7 +1639,7 @@
     </message>
     <message>
         <source>not judged</source>
-        <translation>nicht beurteilt</translation>
+        <translation>ohne Urteil</translation>
     </message>
     <message>
         <source>yield</source>

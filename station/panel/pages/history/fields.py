@@ -35,7 +35,8 @@ class SearchFields(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.serial = QLineEdit()
-        self.serial.setPlaceholderText(translate("history", "serial, or prefix and *"))
+        self.serial.setPlaceholderText(translate("history", "serial"))
+        self.serial.setToolTip(translate("history", "A serial, or a prefix followed by *"))
         self.serial.setMinimumWidth(120)
         self.since, self.verdict, self.kind, self.segment, self.score, self.state = (
             Choice() for _ in range(6)

@@ -106,8 +106,8 @@ class HistoryPage(Page):
         found = {row.inspection_id for row in rows}
         self._thumbs = {number: image for number, image in self._thumbs.items() if number in found}
         self.film.fill(rows, self._known_thumbs(), known)
-        more = translate("history", "the newest 300") if len(rows) == FOUND else ""
-        self._count.setText(f"{len(rows)} {translate('history', 'parts')}  {more}")
+        limited, every = translate("history", "newest {n} parts"), translate("history", "{n} parts")
+        self._count.setText((limited if len(rows) == FOUND else every).format(n=len(rows)))
         if self.film.chosen() is None and rows:
             self.film.setCurrentRow(0)
         elif not rows:

@@ -91,10 +91,10 @@ class LinePage(Page):
         bits.setObjectName("card")
         grid = QGridLayout(bits)
         grid.setSpacing(4)
-        here = translate("line", "station")
+        station, plc = data("station"), data("PLC")
         both: tuple[tuple[str, str, type[IntFlag]], ...] = (
-            ("CONTROL", f"PLC → {here}", Control),
-            ("STATUS", f"{here} → PLC", Status),
+            ("CONTROL", f"{plc} → {station}", Control),
+            ("STATUS", f"{station} → {plc}", Status),
         )
         for row, (register, title, flags) in enumerate(both):
             grid.addWidget(label(title, "quiet"), row * 3, 0, 1, 8)
@@ -116,7 +116,7 @@ class LinePage(Page):
         below = QSplitter(Qt.Orientation.Horizontal)
         below.addWidget(titled(translate("line", "registers"), self.registers))
         below.addWidget(titled(translate("line", "edges on the bus, newest first"), self.edges))
-        below.setSizes([420, 660])
+        below.setSizes([370, 710])
         column = QVBoxLayout(self)
         column.addWidget(bits)
         column.addLayout(hand)
