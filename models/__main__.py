@@ -198,11 +198,11 @@ def _export(arguments: argparse.Namespace) -> int:
 def _drift(arguments: argparse.Namespace) -> int:
     from models.evaluation.drift import DRIFTS, STRENGTHS, drift, write_drift
     from station.classify.drift import read_reference
-    from station.classify.onnx import LOOK, Classifier
+    from station.classify.onnx import APPEARANCE_SIZE, Classifier
 
     classifier = Classifier(arguments.model)
     path = arguments.reference
-    reference = None if path is None else read_reference(path, classifier.card.file_hash, LOOK)
+    reference = None if path is None else read_reference(path, classifier.card.file_hash, APPEARANCE_SIZE)
     with _progress("drifting", len(DRIFTS) * len(STRENGTHS)) as advance:
         steps = drift(arguments.lot, classifier, reference, advance)
     for step in steps:

@@ -1,4 +1,4 @@
-"""Times of the shipped classifier and the paper's network on 21 crops: `python -m models.bench [FILE ...]`"""
+"""Compares the times of a classifier and the paper's network: `python -m models.bench [FILE ...]`."""
 
 import statistics
 import sys
@@ -53,7 +53,7 @@ def main() -> None:
         runs["the paper's network, 1.6 M weights"] = lambda: paper.run(("logits",), {"images": whole})
         for file in [Path(name) for name in sys.argv[1:]] or [SHIPPED]:
             classifier = Classifier(file, THREADS)
-            runs[f"{file}, maps included"] = lambda c=classifier: c(crops)  # type: ignore[misc]
+            runs[f"{file}, maps included"] = lambda own=classifier: own(crops)  # type: ignore[misc]
         times: dict[str, list[float]] = {name: [] for name in runs}
         for _ in range(ROUNDS):
             for name, run in runs.items():

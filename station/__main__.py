@@ -1,4 +1,4 @@
-"""Command line of the station."""
+"""The command `weldgate`: starts the station, judges recorded images, serves records and registers."""
 
 import argparse
 import gc
@@ -12,15 +12,17 @@ from contextlib import suppress
 from pathlib import Path
 
 from station import __version__
+from station.cli.line import add_line_options
 from station.cli.records import add_commands
 from station.errors import WeldgateError
 from station.files.installation import SHIPPED_NETWORKS, room_command
 
 SETTINGS = Path("station.toml")
+"""Settings file that is used unless -c names another one."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; 0 good, 1 something was found wrong, 2 it could not be done."""
+    """Run one command and return its exit code: 0 good, 1 a problem was found, 2 the command failed."""
     arguments = _parser().parse_args(argv)
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", stream=sys.stderr)
     try:
@@ -40,7 +42,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def add(name: str, command: object, text: str, settings: bool = True) -> argparse.ArgumentParser:
-        sub = commands.add_parser(name, help=text, description=text)
+        sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
         sub.set_defaults(command=command)
         if settings:
             sub.add_argument(
@@ -53,106 +55,101 @@ def _parser() -> argparse.ArgumentParser:
             )
         return sub
 
-    add("run", _run, "start engine and panel")
-    add("engine", _engine, "run the inspection, without a window")
-    add("panel", _panel, "open the operator's window")
+    add("run", _run, "start the engine and open the operator's window")
+    add("engine", _engine, "run the inspection without a window")
+    add("panel", _panel, "open the operator's window for a running engine")
     replay = add(
-        "replay", _replay, "judge recorded images or records again: same code, no PLC", settings=False
+        "replay",
+        _replay,
+        "judge recorded images or records again with the code of the line, but without a PLC",
+        settings=False,
     )
     replay.add_argument(
         "paths",
         nargs="+",
         type=Path,
         metavar="PATH",
-        help="images, folders, archives: with these the line is compared",
+        help="images, folders or archives; results of an archive are compared with its recorded verdicts",
     )
     replay.add_argument(
         "-c",
         "--settings",
         type=Path,
         metavar="FILE",
-        help="settings file (default: the shipped limits and model)",
+        help="read settings from this file (default: use the shipped networks and the default limits)",
     )
     replay.add_argument(
-        "--recipe", type=int, default=1, metavar="N", help="recipe of the settings (default: %(default)s)"
+        "--recipe", type=int, default=1, metavar="N", help="use this recipe (default: %(default)s)"
     )
-    replay.add_argument("--model", type=Path, metavar="FILE", help="another classifier")
     replay.add_argument(
-        "--um-per-px", type=float, metavar="UM", help="scale of the images (default: that of the settings)"
+        "--model", type=Path, metavar="FILE", help="use this classifier instead of the configured one"
     )
-    replay.add_argument("--processes", type=int, metavar="N", help="default: one for each core")
+    replay.add_argument(
+        "--um-per-px",
+        type=float,
+        metavar="UM",
+        help="set the scale of the images in µm per pixel (default: the scale in the settings)",
+    )
+    replay.add_argument(
+        "--processes", type=int, metavar="N", help="use this many processes (default: one per core)"
+    )
     replay.add_argument(
         "--json",
         type=Path,
         metavar="FILE",
-        help="write all results as JSON; an interrupted run goes on where it stopped",
+        help="write all results as JSON; an interrupted run continues where it stopped",
     )
-    replay.add_argument("--csv", type=Path, metavar="FILE", help="write a table")
+    replay.add_argument("--csv", type=Path, metavar="FILE", help="write one row per image")
     replay.add_argument(
         "--report",
         type=Path,
         metavar="DIR",
-        help="write report.html: counts, verdicts that flip and errors, with pictures",
+        help="write report.html with counts, flipped verdicts and errors, with images",
     )
     replay.add_argument(
         "--truth",
         type=Path,
         metavar="FILE",
-        help="what the images show, for --report: CSV with name and verdict, or JSON",
+        help="compare with the true verdicts in --report: CSV with the columns name and verdict, or JSON",
     )
-    add("check", _check, "say what is wrong with settings, model, archive, camera and port, and what to do")
+    add(
+        "check",
+        _check,
+        "check settings, models, archive, camera and PLC; report what is wrong and what to do",
+    )
     add_commands(
         commands.add_parser(
-            "records", help="list, verify, prune and export the records of an archive; edges on the bus"
+            "records", help="list, verify, prune, export and report the records of an archive"
         )
     )
-    registers = add("registers", _registers, "print the register map", settings=False)
+    registers = add(
+        "registers", _registers, "print the register map or the PLC function block", settings=False
+    )
     registers.add_argument(
         "--format",
         choices=("md", "csv", "st", "scl", "symbols"),
         default="md",
-        help="md, csv: the map; st: the block in IEC 61131-3; scl: for TIA Portal; symbols: for EcoStruxure (default: %(default)s)",
+        help=(
+            "choose the output: md or csv for the map, st for the block in IEC 61131-3 Structured Text, "
+            "scl for TIA Portal, symbols for EcoStruxure (default: %(default)s)"
+        ),
     )
-    line = add("line", _line, "run a simulated line PLC against a station", settings=False)
-    line.add_argument(
-        "--mode", choices=("server", "client"), default="server", help="of the station (default: %(default)s)"
-    )
-    line.add_argument(
-        "--host", default="127.0.0.1", help="server: of the station; client: our own (default: %(default)s)"
-    )
-    line.add_argument(
-        "--port", type=int, choices=range(1, 65536), default=1502, metavar="PORT", help="default: %(default)s"
-    )
-    line.add_argument("--parts", type=int, default=24, help="default: %(default)s")
-    line.add_argument(
-        "--pace",
-        type=float,
-        default=0.0,
-        metavar="S",
-        help="seconds between parts (default: as fast as it goes)",
-    )
-    line.add_argument(
-        "--accept-simulated", action="store_true", help="take verdicts on pictures of an emulated camera"
-    )
-    line.add_argument(
-        "--knob",
-        nargs="+",
-        default=[],
-        metavar="NAME",
-        help="failures, rolled by the seed; a wrong name lists them",
-    )
-    line.add_argument("--seed", type=int, default=0, help="default: %(default)s")
+    line = add("line", _line, "run a simulated line with its PLC against a station", settings=False)
+    add_line_options(line)
     certificates = add(
-        "certificates", _certificates, "make certificates for trials of Modbus/TCP Security", settings=False
+        "certificates", _certificates, "make test certificates for Modbus/TCP Security", settings=False
     )
     certificates.add_argument(
-        "folder", type=Path, metavar="DIR", help="where they go; keys are readable by the owner alone"
+        "folder",
+        type=Path,
+        metavar="DIR",
+        help="write the certificates here; only the owner can read the keys",
     )
     certificates.add_argument(
         "--host", default="127.0.0.1", help="name or address of the server (default: %(default)s)"
     )
     certificates.add_argument(
-        "--days", type=int, default=90, help="how long they hold (default: %(default)s)"
+        "--days", type=int, default=90, metavar="N", help="days of validity (default: %(default)s)"
     )
     return parser
 
@@ -165,10 +162,10 @@ def _engine(arguments: argparse.Namespace) -> int:
 
 
 def _panel(arguments: argparse.Namespace) -> int:
-    if hasattr(os, "SCHED_IDLE"):  # the window, also while it opens, takes the time that the engine leaves
+    if hasattr(os, "SCHED_IDLE"):  # the window only uses processor time that the engine does not need
         os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads would spin
-    gc.disable()  # there is nothing to collect while it opens
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # more threads would busy-wait
+    gc.disable()  # nothing to collect while the window opens
     from station.panel.app import run_panel
 
     gc.freeze()
@@ -208,9 +205,9 @@ def _check(arguments: argparse.Namespace) -> int:
     for name, problem in check(arguments.settings):
         print(f"{'ok  ' if problem is None else 'BAD '} {name}{'' if problem is None else ': ' + problem}")
         problems += problem is not None
-    with suppress(SettingsError):  # said above
+    with suppress(SettingsError):  # reported above
         for change in words(arguments.settings):
-            print(f"note changed at the station, over {arguments.settings.name}: {change}")
+            print(f"note changed at the station, overrides {arguments.settings.name}: {change}")
     return 1 if problems else 0
 
 
@@ -224,22 +221,9 @@ def _registers(arguments: argparse.Namespace) -> int:
 
 
 def _line(arguments: argparse.Namespace) -> int:
-    import asyncio
+    from station.cli.line import run_line_command
 
-    from station.plc.simulated.run import LineRun, run_line
-
-    run = LineRun(
-        mode=arguments.mode,
-        host=arguments.host,
-        port=arguments.port,
-        parts=arguments.parts,
-        pace_s=arguments.pace,
-        accept_simulated=arguments.accept_simulated,
-        knobs=tuple(arguments.knob),
-        seed=arguments.seed,
-    )
-    asyncio.run(run_line(run))
-    return 0
+    return run_line_command(arguments)
 
 
 def _certificates(arguments: argparse.Namespace) -> int:

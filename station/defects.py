@@ -1,7 +1,7 @@
 """Why a part is not OK: the kinds of defect, and the reasons why a part could not be judged.
 
-This file alone says which kinds of defect there are. Settings, scores, findings, labels, training, reports, registers and the
-window loop over `KINDS`; the generator has one module per kind in `synth.defects`.
+This file alone defines which kinds of defect there are. Settings, scores, findings, labels, training,
+reports, registers and the window loop over `KINDS`; the generator has one module per kind in `synth.defects`.
 """
 
 from dataclasses import dataclass
@@ -10,18 +10,18 @@ from typing import Any
 
 
 class Reason(StrEnum):
-    """Why a part is not OK: the words that records and people see, and the number that the PLC reads.
+    """Why a part is not OK: the text for records and people, and the number for the PLC.
 
-    The numbers are part of the wire protocol: a new reason takes the next free number, wherever it stands here.
+    The numbers are part of the wire protocol: a new reason takes the next free number, and no number changes.
     """
 
     code: int
-    """Value of the register REASON; ERROR_CODE is 16#1000 plus this number if the part could not be judged."""
+    """Value of the register REASON; for a part that could not be judged, ERROR_CODE is 16#1000 plus it."""
 
     def __new__(cls, text: str, code: int = 0) -> "Reason":
-        """Make a member. Raises ValueError if it has no number of its own."""
+        """Make a member. Raises ValueError if it has no code, or the code of another member."""
         if code < 1 or code in {member.code for member in cls}:
-            raise ValueError(f"reason {text!r} needs a PLC code of its own, from 1 on")
+            raise ValueError(f"reason {text!r} needs a PLC code of its own, 1 or higher")
         member = str.__new__(cls, text)
         member._value_ = text
         member.code = code
@@ -50,31 +50,31 @@ class Width(Enum):
 
     EDGE_TO_EDGE = "edge to edge"
     MEAN = "mean"
-    """Area by length: for long findings whose border is uneven."""
+    """Area divided by length, for long findings with uneven borders."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DefectKind:
-    """One kind of defect: everything that the rest of weldgate needs to know of it."""
+    """One kind of defect, with everything that the rest of weldgate needs to know about it."""
 
     name: str
     """Key in settings, labels, datasets and model files; never changes once released."""
     reason: Reason
-    """Words for people, and the PLC code."""
+    """Text for people, and code for the PLC."""
     color_rgb: tuple[int, int, int]
-    """Colour of the defect map's layer in the window."""
+    """Colour of its layer of the defect map in the window."""
     line_fraction: float
-    """Expected fraction of a line's segments that show it: weighs scores and thresholds."""
+    """Expected fraction of a line's segments that show it; weights scores and thresholds."""
     is_mapped: bool = True
-    """True if the classifier's defect map has a channel for it, which measures its findings; False if it is judged by its crop alone
-    and its findings are whole segments."""
+    """True if the classifier's defect map has a channel for it, which measures its findings; False if only
+    whole crops are judged, and its findings are whole segments."""
     joins_mm: float = 0.0
-    """Areas of the defect map closer than this are one finding."""
+    """Distance below which two areas of the defect map are one finding."""
     width: Width = Width.EDGE_TO_EDGE
 
     @classmethod
     def __get_pydantic_core_schema__(cls, _source: object, _handler: object) -> Any:
-        """Read and write a kind as its name; an unknown name is refused."""
+        """Return a schema that reads and writes a kind as its name, and refuses unknown names."""
         from pydantic_core import core_schema
 
         as_name = core_schema.plain_serializer_function_ser_schema(
@@ -94,11 +94,11 @@ KINDS: tuple[DefectKind, ...] = (
         width=Width.MEAN,
     ),
 )
-"""All kinds of defect, the graver later: a crop that shows several is labelled with the last of them."""
+"""All kinds of defect by increasing severity: a crop that shows several is labelled with the last of them."""
 
 
 def kind_named(name: str) -> DefectKind:
-    """Return the kind with this name. Raises ValueError naming the known ones."""
+    """Return the kind with this name. Raises ValueError with the known names."""
     for kind in KINDS:
         if kind.name == name:
             return kind
@@ -106,7 +106,7 @@ def kind_named(name: str) -> DefectKind:
 
 
 def kind_of(reason: Reason) -> DefectKind | None:
-    """Return the kind of defect behind a reason, or None if the reason is not a defect."""
+    """Return the kind of defect that has this reason, or None if the reason is not a defect."""
     return next((kind for kind in KINDS if kind.reason is reason), None)
 
 

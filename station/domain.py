@@ -1,11 +1,11 @@
-"""The facts that travel through the station: frozen, with units in the names.
+"""Frozen data classes that travel through the station: frame, ring, scores, findings and inspection.
 
-Pixels: (x, y), the centre of the image's top left pixel at (0, 0), y down. Angles: degrees, 0 at +x, clockwise as seen
-in the image. Arrays: (row, column).
+Pixels are (x, y) with y down; the centre of the image's top left pixel is (0, 0). Angles are in degrees, 0 at
++x, clockwise as seen in the image. Arrays are indexed (row, column). Names carry their units.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from datetime import datetime
 from enum import StrEnum
 
@@ -15,26 +15,32 @@ from numpy.typing import NDArray
 from station.defects import DefectKind, Reason
 
 Image = NDArray[np.uint8]
+"""Grey image (height, width) uint8, or several of them with leading axes."""
 
 SEGMENTS = 21
+"""Number of segments of the ring."""
 SEGMENT_PX = 128
+"""Side of a crop in pixels."""
 STRIP_COLUMNS = SEGMENTS * SEGMENT_PX
+"""Width of the strip in pixels: once round the ring."""
 STRIP_ROWS = SEGMENT_PX
+"""Height of the strip in pixels."""
 SEGMENT_DEG = 360.0 / SEGMENTS
+"""Angle of one segment in degrees."""
 
 
 class Purpose(StrEnum):
-    """Why a picture was taken; only a part's verdict releases anything."""
+    """Why a frame was taken; only the verdict of a `PART` can release a part."""
 
     PART = "part"
     GOLDEN = "golden"
-    """A master, because the PLC asked for it."""
+    """A master, inspected on request of the PLC."""
     TEST = "test"
-    """Because a person at the station asked for it; the PLC is told nothing."""
+    """A test image, inspected on request of a person and not reported to the PLC."""
 
 
 class Verdict(StrEnum):
-    """What the station says of a part. ERROR: not inspected; it is never a kind of OK."""
+    """Result of inspecting a part; ERROR means that it was not inspected, and is never a kind of OK."""
 
     OK = "OK"
     NOK = "NOK"
@@ -42,7 +48,7 @@ class Verdict(StrEnum):
 
 
 class Origin(StrEnum):
-    """Where a frame comes from; only `CAMERA` may release a part."""
+    """Source of a frame; only frames from `CAMERA` can release a part."""
 
     CAMERA = "camera"
     SIMULATED = "simulated"
@@ -51,105 +57,110 @@ class Origin(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """One picture as grabbed: `image` (H, W) uint8, never changed afterwards."""
+    """One image as grabbed by the camera: `image` (height, width) uint8, never changed afterwards."""
 
     image: Image
     grabbed_at: datetime
     source: str
-    """Camera serial or file name."""
+    """Serial number of the camera, or file name."""
     origin: Origin
 
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """The weld's centre line in frame pixels."""
+    """Circle fitted to the weld's centre line, in frame pixels."""
 
     center_x_px: float
     center_y_px: float
     radius_px: float
     support: float
-    """Share of the circumference where weld or joint was seen, 0 to 1."""
-    residual_px: float = 0.0
-    """Root mean square distance of what was seen there from the circle."""
+    """Fraction of the circumference where weld or joint was seen, 0 to 1."""
+    residual_px: float = field(default=0.0, kw_only=True)
+    """Root mean square distance of the weld or joint from the circle, where it was seen."""
 
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Image quality on the unwrapped strip."""
+    """Image quality, measured on the strip."""
 
     mean_dn: float
+    """Mean grey level, 0 to 255."""
     dark_share: float
-    """Share of pixels at grey level 2 or below."""
+    """Fraction of the pixels at grey level 2 or below."""
     saturated_share: float
+    """Fraction of the pixels at grey level 254 or above."""
     sharpness: float
-    """Root mean square of the Laplacian over the mean grey level."""
+    """Root mean square of the Laplacian, divided by the mean grey level."""
 
 
 @dataclass(frozen=True, slots=True)
 class SegmentScores:
-    """Probabilities of one segment: OK, and each kind of defect that the classifier knows. They add up to 1."""
+    """Probabilities of one segment: OK, and each defect kind that the classifier knows; their sum is 1."""
 
     ok: float
     defects: Mapping[DefectKind, float]
 
     @property
     def nok(self) -> float:
-        """Probability of the segment being NOK, whatever the kind of defect."""
+        """Probability that the segment is NOK, of any defect kind."""
         return 1.0 - self.ok
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
-    """One defect, merged over neighbouring segments; `end_deg` may exceed 360."""
+    """One defect measured on a part, merged over neighbouring segments."""
 
     kind: Reason
     start_deg: float
     end_deg: float
+    """End angle; exceeds 360 if the finding crosses angle 0."""
     length_mm: float
-    """Along the weld."""
+    """Length along the weld."""
     score: float
+    """Highest score of NOK among the segments of the finding."""
     width_mm: float | None = None
-    """Across the weld; None, as the area, if the defect was not seen apart from its segment."""
+    """Width across the weld; None, like the area, if only whole segments are known to be defective."""
     area_mm2: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """Milliseconds of each step; None where the step was not reached."""
+    """Duration of each step in milliseconds; None if the step was not reached."""
 
     grab_ms: float | None = None
     locate_ms: float | None = None
     unwrap_ms: float | None = None
     classify_ms: float | None = None
-    record_ms: float | None = None
+    record_ms: float | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
 class Inspection:
-    """One part as judged. OK only with 21 judged segments."""
+    """Result of inspecting one part; OK requires 21 judged segments, none of them rejected."""
 
     verdict: Verdict
     reason: Reason | None
+    _: KW_ONLY
     ring: Ring | None = None
     quality: Quality | None = None
     scores: tuple[SegmentScores, ...] = ()
     findings: tuple[Finding, ...] = ()
     timing: Timing = field(default_factory=Timing)
     rejected: tuple[Reason | None, ...] = ()
-    """Kind of defect for which each of the 21 segments is rejected, None for the others; empty if none was judged."""
+    """Defect kind for which each of the 21 segments is rejected, None for a segment that is not; empty if
+    none was judged."""
     novelty: float | None = None
-    """Distance of the look of the part's crops to that of the training images; about 1 for these."""
+    """Distance of the part's appearance from the training images; about 1 for a training image."""
     look: tuple[float, ...] = ()
-    """What the part looks like, whatever it shows: mean over its crops, of mean 0 and covariance 1 over the training crops."""
+    """Appearance features of the part: mean over its crops, whitened on the training crops (zero mean, unit
+    covariance)."""
 
     def __post_init__(self) -> None:
         judged = len(self.scores) == SEGMENTS and self.ring is not None
         if self.verdict is Verdict.OK and not (judged and self.reason is None and not any(self.rejected)):
-            raise ValueError(
-                "OK needs a ring, 21 judged segments, none of them rejected, and no reason against it"
-            )
+            raise ValueError("OK needs a ring, 21 judged segments, none of them rejected, and no reason")
         if len(self.rejected) != len(self.scores):
-            raise ValueError(f"{len(self.scores)} scores with {len(self.rejected)} decisions on them")
+            raise ValueError(f"{len(self.scores)} scores, but {len(self.rejected)} decisions on them")
 
     @property
     def nok(self) -> tuple[bool, ...]:
@@ -160,5 +171,5 @@ class Inspection:
     def error(
         reason: Reason, ring: Ring | None = None, quality: Quality | None = None, timing: Timing | None = None
     ) -> "Inspection":
-        """A part that could not be judged."""
+        """Return the result for a part that could not be judged."""
         return Inspection(Verdict.ERROR, reason, ring=ring, quality=quality, timing=timing or Timing())

@@ -1,5 +1,8 @@
-"""Older versions of a record, brought to today's form: version 1 lacks look, purpose, recipe and chain; in both versions the kinds of
-defect are field names instead of data, and the decision on each segment is not kept."""
+"""Converts records of format versions 1 and 2 to the current version.
+
+Version 1 has no appearance, purpose, recipe and chain. In both versions the kinds of defect are field names
+instead of data, and the decision on each segment is missing.
+"""
 
 from typing import Any
 
@@ -10,9 +13,11 @@ from station.classify.thresholds import Thresholds
 from station.domain import Finding, SegmentScores
 
 FORMAT = 3
+"""Version of the record format that is written."""
 OLD = (1, 2)
+"""Older versions that can be read."""
 KINDS = {"hole": ("hole_threshold", "hole_min_mm"), "missing_weld": ("missing_threshold", "missing_min_mm")}
-"""The kinds of defect of those versions, with the fields of their limits."""
+"""Kinds of defect in the old versions, with the field names of their threshold and minimum length."""
 
 _SCORES = TypeAdapter(tuple[SegmentScores, ...])
 _FINDINGS = TypeAdapter(tuple[Finding, ...])
@@ -20,9 +25,9 @@ _THRESHOLDS = TypeAdapter(Thresholds)
 
 
 def upgraded(raw: dict[str, Any]) -> dict[str, Any]:
-    """Return the JSON object of a record of version 1 or 2 as one of today's version.
+    """Return the JSON object of a record of version 1 or 2 as an object of the current version.
 
-    Raises KeyError, TypeError or ValueError if it is not such an object.
+    Raises KeyError, TypeError or ValueError if `raw` is not a record of version 1 or 2.
     """
     inspection, provenance = dict(raw["inspection"]), dict(raw["provenance"])
     limits = [
@@ -31,7 +36,8 @@ def upgraded(raw: dict[str, Any]) -> dict[str, Any]:
     ]
     provenance["thresholds"] = {"kinds": limits, "segments": provenance.pop("segment_thresholds", [])}
     inspection["scores"] = [
-        {"ok": s["ok"], "defects": {kind: s[kind] for kind in KINDS}} for s in inspection["scores"]
+        {"ok": scores["ok"], "defects": {kind: scores[kind] for kind in KINDS}}
+        for scores in inspection["scores"]
     ]
     rejected = rejected_kinds(
         _SCORES.validate_python(inspection["scores"]),

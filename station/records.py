@@ -1,7 +1,8 @@
-"""One inspection on disk. Version 3; versions 1 and 2 are read (`station.record_versions`).
+"""Records: one inspection on disk, in format version 3; `station.record_versions` reads versions 1 and 2.
 
-A record is `YYYY-MM-DD/NNNNNNNN.png`, the frame as grabbed, lossless, and `NNNNNNNN.json`, all that led to its verdict;
-the index is `index.sqlite` beside the day folders. Readable with any image viewer and any SQLite tool.
+A record has two files: `YYYY-MM-DD/NNNNNNNN.png`, the frame as grabbed, lossless, and `NNNNNNNN.json`,
+everything that led to its verdict. The index is `index.sqlite` next to the day folders. Any image viewer and
+any SQLite tool can read them.
 """
 
 import json
@@ -15,9 +16,9 @@ from station.domain import Inspection, Origin, Purpose, Verdict
 from station.record_versions import FORMAT, OLD, upgraded
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
-    """Which software judged, by which model and limits."""
+    """What judged a part: software, networks and limits."""
 
     software: str
     model_version: str
@@ -25,14 +26,14 @@ class Provenance:
     ring_model_hash: str
     config_crc: int
     thresholds: Thresholds
-    """All limits of the decision."""
+    """Thresholds and minimum lengths of the decision."""
     recipe: int = 1
     limits_hash: str = ""
-    """SHA-256 of the settings of weld and quality gate: what else a verdict depends on."""
+    """SHA-256 of the settings of weld and quality gate, on which a verdict depends too."""
 
     @property
     def limits(self) -> str:
-        """The thresholds and minimum lengths in words."""
+        """Thresholds and minimum lengths as text."""
         kinds = self.thresholds.kinds
         words = [f"{limit.kind.reason} {limit.threshold:g}" for limit in kinds]
         words += [f"segment {number}: {limit:g}" for number, limit in self.thresholds.segments]
@@ -44,7 +45,7 @@ class Provenance:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Which part, as the PLC named it, and where its picture comes from."""
+    """Identity of a part as given by the PLC, and the origin of its frame."""
 
     serial: str
     trigger_id: int
@@ -54,7 +55,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
-    """One judged part as kept on disk."""
+    """One inspected part as stored on disk."""
 
     inspection_id: int
     serial: str
@@ -63,18 +64,18 @@ class Record:
     source: str
     origin: Origin
     frame_file: str | None
-    """Relative to the archive folder; None if no frame came."""
+    """Path of the frame relative to the archive folder; None if there was no frame or it was not stored."""
     frame_sha256: str | None
     inspection: Inspection
     provenance: Provenance
     purpose: Purpose = Purpose.PART
     chain_before: str = ""
-    """Hash over all records before this one."""
+    """Hash of the chain of all records before this one."""
     format: int = FORMAT
 
     @property
     def verdict(self) -> Verdict:
-        """Verdict as decided; never changed afterwards."""
+        """Verdict of the inspection; never changed afterwards."""
         return self.inspection.verdict
 
 
@@ -87,7 +88,7 @@ def to_json(record: Record) -> bytes:
 
 
 def from_json(text: bytes) -> Record:
-    """Return a record from its JSON text, also of an older version. Raises pydantic.ValidationError."""
+    """Return the record in this JSON text of any version. Raises pydantic.ValidationError."""
     try:
         return _ADAPTER.validate_json(text)
     except ValidationError as error:

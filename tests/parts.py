@@ -70,7 +70,14 @@ def nok_inspection() -> Inspection:
 
 def provenance() -> Provenance:
     """Some software and model."""
-    return Provenance("0.1.0", "1", "abc", "def", 0x1234, thresholds(0.5, 0.5))
+    return Provenance(
+        software="0.1.0",
+        model_version="1",
+        model_hash="abc",
+        ring_model_hash="def",
+        config_crc=0x1234,
+        thresholds=thresholds(0.5, 0.5),
+    )
 
 
 def record(inspection: Inspection, number: int = 1, origin: Origin = Origin.SIMULATED) -> Record:

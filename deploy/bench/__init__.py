@@ -1,1 +1,1 @@
-"""Benchmarks, each a command: what it takes, in one table."""
+"""Benchmarks; each is a command that prints its times as a table."""

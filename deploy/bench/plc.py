@@ -1,4 +1,7 @@
-"""What the PLC side adds to a cycle, quiet and with four more clients that read; a judge answers at once in place of the inspection."""
+"""Measures what the PLC side adds to a cycle, alone and with four more clients that read.
+
+A judge that answers at once replaces the inspection.
+"""
 
 import argparse
 import asyncio
@@ -21,23 +24,24 @@ from station.plc.wire.modbus import ModbusClient
 from station.settings.model import PlcSettings
 
 READERS, READS_PER_S = 4, 50
+"""Number of additional clients, and reads per second of each."""
 BLOCK = 50
-"""Parts in a row before quiet and loaded change places."""
+"""Number of parts before the measurement changes between quiet and loaded."""
 
 
 def _ok(trigger: Trigger) -> Result:
     return judged(trigger, VerdictCode.OK)
 
 
-async def _until(client: ModbusClient, bit: Status, wanted: bool) -> None:
+async def _until(client: ModbusClient, bit: Status, value: bool) -> None:
     until = time.monotonic() + 5
-    while bool((await client.read(STATUS_START, STATUS_WORDS))[0] & bit) != wanted:
+    while bool((await client.read(STATUS_START, STATUS_WORDS))[0] & bit) != value:
         if time.monotonic() > until:
             raise WeldgateError(f"the station did not answer with {bit.name}")
 
 
 async def _part(client: ModbusClient, number: int) -> float:
-    """Milliseconds from the written TRIGGER to the read RESULT_VALID, read as fast as it goes."""
+    """Return the milliseconds from writing TRIGGER to reading RESULT_VALID, polled without a pause."""
     await _until(client, Status.READY, True)
     await client.write(2, [number])
     start = time.perf_counter()
@@ -64,7 +68,8 @@ def _read_on(port: int, on: threading.Event, stop: threading.Event) -> None:
 
 
 async def _drive(port: int, parts: int, loaded: threading.Event) -> dict[bool, list[float]]:
-    client, answer = ModbusClient("127.0.0.1", port), {False: [], True: []}  # type: ignore[var-annotated]
+    client = ModbusClient("127.0.0.1", port)
+    times_ms: dict[bool, list[float]] = {False: [], True: []}
     await client.connect()
     await client.write(0, [int(Control.ENABLE)])
     for number in range(1, 2 * parts + 1):
@@ -72,16 +77,22 @@ async def _drive(port: int, parts: int, loaded: threading.Event) -> dict[bool, l
         if load != loaded.is_set():
             (loaded.set if load else loaded.clear)()
             await asyncio.sleep(0.1)
-        answer[load].append(await _part(client, number))
+        times_ms[load].append(await _part(client, number))
     client.close()
-    return answer
+    return times_ms
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print medians and p99."""
-    parser = argparse.ArgumentParser(prog="bench-plc", description=__doc__)
+    """Measure, and print medians and p99."""
+    parser = argparse.ArgumentParser(
+        prog="bench-plc", description="Measure what the PLC side adds to a cycle."
+    )
     parser.add_argument(
-        "--parts", type=int, default=500, help="quiet, and as many loaded (default: %(default)s)"
+        "--parts",
+        type=int,
+        default=500,
+        metavar="N",
+        help="number of parts, each without and with more clients (default: %(default)s)",
     )
     arguments = parser.parse_args(argv)
     line = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0))
@@ -103,7 +114,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             reader.join(timeout=5)
         line.stop()
     table = Table(
-        "", "median ms", "p99 ms", title=f"{arguments.parts} parts each, station as server, nothing inspected"
+        "", "median ms", "p99 ms", title=f"{arguments.parts} parts each, station as server, no inspection"
     )
     others = f"{READERS} more clients, {READS_PER_S} reads/s each"
     rows = (

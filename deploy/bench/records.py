@@ -1,10 +1,12 @@
-"""What a record costs, and how long a search among a hundred thousand takes."""
+"""Measures how long it takes to write a record, and to search among 100,000 records."""
 
+import argparse
 import statistics
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -14,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from deploy.demo.station import shipped_parts
-from station.archive.reader import Wanted, find
+from station.archive.reader import Query, find
 from station.archive.schema import open_index
 from station.archive.writer import Archive
 from station.classify.thresholds import Limit, Thresholds
@@ -25,12 +27,17 @@ from station.records import Part, Provenance
 from station.settings.model import ArchiveSettings
 
 RECORDS, TIMES = 100_000, 30
+"""Number of records that are searched, and number of repetitions."""
 START = datetime(2026, 1, 1, tzinfo=UTC)
+"""Time of the first record."""
 
 
-def main(_argv: Sequence[str] | None = None) -> int:
-    """Print medians and worst."""
-    table = Table("", "median ms", "worst ms", title=f"records, {TIMES} times each")
+def main(argv: Sequence[str] | None = None) -> int:
+    """Measure, and print medians and maxima."""
+    argparse.ArgumentParser(
+        prog="bench-records", description="Measure how long it takes to write and search records."
+    ).parse_args(argv)
+    table = Table("", "median ms", "maximum ms", title=f"records, {TIMES} times each")
     with tempfile.TemporaryDirectory(prefix="weldgate-") as name:
         folder = Path(name)
         for what, work in (*_writing(folder / "written"), *_searching(folder / "searched")):
@@ -46,11 +53,11 @@ def main(_argv: Sequence[str] | None = None) -> int:
 
 
 def _codecs(console: Console) -> None:
-    """Lossless codecs side by side, in turns, on one thread."""
+    """Compare lossless codecs, in turns on one thread."""
     images = [read_image(part.path) for part in shipped_parts()]
     level1, none = (cv2.IMWRITE_PNG_COMPRESSION, 1), (cv2.IMWRITE_TIFF_COMPRESSION, 1)
     codecs: dict[str, tuple[str, tuple[int, ...]]] = {
-        "PNG, as the station": (".png", PNG),
+        "PNG, as in the archive": (".png", PNG),
         "PNG, level 1": (".png", level1),
         "PNG, level 1, filter SUB": (".png", (*level1, cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_SUB)),
         "TIFF, LZW": (".tiff", (cv2.IMWRITE_TIFF_COMPRESSION, 5)),
@@ -67,7 +74,7 @@ def _codecs(console: Console) -> None:
     table = Table(
         "",
         "median ms",
-        "MB a frame",
+        "MB per frame",
         title=f"lossless codecs, {len(images)} frames of {images[0].shape[1]} x {images[0].shape[0]}",
     )
     for name, ms in taken.items():
@@ -80,9 +87,22 @@ def _writing(folder: Path) -> list[tuple[str, Callable[[], object]]]:
     archive = Archive(ArchiveSettings(folder=folder, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     scores = (SegmentScores(1.0, dict.fromkeys(KINDS, 0.0)),) * SEGMENTS
     inspection = Inspection(
-        Verdict.OK, None, Ring(50, 50, 40, 1), None, scores, rejected=(None,) * SEGMENTS, look=(0.123,) * 192
+        Verdict.OK,
+        None,
+        ring=Ring(50, 50, 40, 1),
+        quality=None,
+        scores=scores,
+        rejected=(None,) * SEGMENTS,
+        look=(0.123,) * 192,
     )
-    provenance = Provenance("bench", "0", "", "", 0, Thresholds(tuple(Limit(kind, 0.5) for kind in KINDS)))
+    provenance = Provenance(
+        software="bench",
+        model_version="0",
+        model_hash="",
+        ring_model_hash="",
+        config_crc=0,
+        thresholds=Thresholds(tuple(Limit(kind, 0.5) for kind in KINDS)),
+    )
 
     def commit(frame: Frame | None) -> None:
         archive.commit(
@@ -90,13 +110,13 @@ def _writing(folder: Path) -> list[tuple[str, Callable[[], object]]]:
             inspection,
             Part("BENCH", 1, Origin.SIMULATED),
             provenance,
-            datetime.now(UTC),
+            now=datetime.now(UTC),
         )
 
     frame = Frame(image, datetime.now(UTC), "bench", Origin.SIMULATED)
     return [
         (
-            f"encode a frame of {image.shape[1]} x {image.shape[0]}, beside the inspection",
+            f"encode a frame of {image.shape[1]} x {image.shape[0]}, in parallel with the inspection",
             lambda: encode_png(image),
         ),
         ("encode, files, fsync, row", lambda: commit(frame)),
@@ -118,24 +138,24 @@ def _searching(folder: Path) -> list[tuple[str, Callable[[], object]]]:
             segments.append((i + 1, int(rng.integers(1, SEGMENTS + 1)), float(worst[i])))
     with index:
         index.executemany(
-            "INSERT INTO records (serial, trigger_id, grabbed_at, origin, verdict, worst_score, record_file, record_sha256) "
-            "VALUES (?, ?, ?, 'camera', ?, ?, ?, '')",
+            "INSERT INTO records (serial, trigger_id, grabbed_at, origin, verdict, worst_score, record_file, "
+            "record_sha256) VALUES (?, ?, ?, 'camera', ?, ?, ?, '')",
             rows,
         )
         index.executemany("INSERT INTO segments VALUES (?, ?, ?)", segments)
     index.close()
     day = START + timedelta(days=10)
-    wanted = (
-        ("one serial", Wanted(serial="CELL-0077777")),
-        ("serials by their beginning, 1000", Wanted(serial="CELL-0077*")),
-        ("an hour", Wanted(since=day, until=day + timedelta(hours=1))),
-        ("segment 7 with at least 0.8", Wanted(segment=7, min_score=0.8)),
-        ("the last 300", Wanted(newest_first=True, limit=300)),
-        ("the last 100 NOK", Wanted(verdict="NOK", newest_first=True, limit=100)),
+    queries = (
+        ("one serial", Query(serial="CELL-0077777")),
+        ("a prefix of serials, 1000 parts", Query(serial="CELL-0077*")),
+        ("an hour", Query(since=day, until=day + timedelta(hours=1))),
+        ("score of segment 7 at least 0.8", Query(segment=7, min_score=0.8)),
+        ("the last 300", Query(newest_first=True, limit=300)),
+        ("the last 100 NOK", Query(verdict="NOK", newest_first=True, limit=100)),
     )
     return [
-        (f"find {name}: {len(find(folder, w))} of {RECORDS}", lambda chosen=w: find(folder, chosen))  # type: ignore[misc]
-        for name, w in wanted
+        (f"find {name}: {len(find(folder, query))} of {RECORDS}", partial(find, folder, query))
+        for name, query in queries
     ]
 
 

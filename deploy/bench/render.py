@@ -1,4 +1,4 @@
-"""Crops per second of the generator beside a plain Mitsuba script of the same picture, in turns in the same minute. `make bench`."""
+"""Compares the speed of the generator with a plain Mitsuba script that renders the same image, in turns."""
 
 import argparse
 import sys
@@ -29,14 +29,17 @@ from synth.recipes.named import PAPER, WIDE
 from synth.surface.mesh import part_meshes
 
 SAMPLES = 64
-"""Of the plain script: two emitter samples each, so that its noise is that of the generator's 4 rays with all emitters."""
+"""Samples per pixel of the plain script, with two emitter samples each; its noise is then that of the
+generator, which traces 4 rays to all emitters."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Time both in turns and print medians and their ratio, then where the generator's time goes."""
-    parser = argparse.ArgumentParser(prog="bench_render", description=__doc__)
+    """Measure both in turns, and print medians, their ratio and where the time of the generator goes."""
+    parser = argparse.ArgumentParser(
+        prog="bench-render", description="Compare the speed of the generator with a plain Mitsuba script."
+    )
     parser.add_argument(
-        "--rounds", type=int, default=3, help="how often each is timed (default: %(default)s)"
+        "--rounds", type=int, default=3, metavar="N", help="number of measurements (default: %(default)s)"
     )
     arguments = parser.parse_args(argv)
     if arguments.rounds < 1:
@@ -44,20 +47,20 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         run(arguments.rounds)
     except SynthError as error:
-        print(f"bench: {error}", file=sys.stderr)
+        print(f"bench-render: {error}", file=sys.stderr)
         return 2
     return 0
 
 
 def run(rounds: int) -> None:
-    """Flat crops and arcs with two workers, beside the plain script with all threads."""
+    """Measure flat crops and arcs with two workers, and the plain script with all threads."""
     model, optics = derive(read_measurement(SHIPPED)), Optics()
     start()
     shards = plan_pieces(5, quotas(12), PAPER, ALL)
     plain(shards[0].parts[0], model, optics)
     seconds: dict[str, list[float]] = {"plain script": [], "generator, flat": [], "generator, arcs": []}
     with workers(2) as pool, tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
-        make = partial(write_dataset, model=model, executor=pool, done=lambda n: None)
+        make = partial(write_dataset, model=model, executor=pool, done=lambda _: None)
         kinds = {"generator, flat": (PAPER, True), "generator, arcs": (WIDE, False)}
         for name, (recipe, is_straight) in kinds.items():
             make(
@@ -66,12 +69,12 @@ def run(rounds: int) -> None:
             )
         for i in range(rounds):
             seconds["plain script"].append(
-                _timed(lambda: [plain(p, model, optics) for p in shards[0].parts]) / 12
+                _timed(lambda: [plain(part, model, optics) for part in shards[0].parts]) / 12
             )
             for name, (recipe, is_straight) in kinds.items():
                 order = Order(seed=9 + i, count=240, recipe=recipe, switches=ALL, is_straight=is_straight)
                 seconds[name].append(_timed(partial(make, Path(folder) / f"{name} {i}", order)) / 240)
-    table = Table("", "crops per s, median", "ms a crop", "5000 crops, min", "times the plain script")
+    table = Table("", "crops per s, median", "ms per crop", "5000 crops, min", "times the plain script")
     base = float(np.median(seconds["plain script"]))
     for name, values in seconds.items():
         each = float(np.median(values))
@@ -84,7 +87,7 @@ def run(rounds: int) -> None:
 
 
 def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
-    """One flat crop the plain way: one scene, Mitsuba's spots and direct integrator, one call."""
+    """Render one flat crop with one scene, Mitsuba's spots and direct integrator, and one call."""
     scene = piece_scene([part], model)
     world: dict[str, Any] = {
         "type": "scene",
@@ -132,7 +135,7 @@ def plain(part: Part, model: WeldModel, optics: Optics) -> np.ndarray:
 
 
 def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
-    """Noise of both renders of the same crop, as a share of the signal: the quality that is compared."""
+    """Print the noise of both renderings of the same crop, as a fraction of the signal."""
     part = shard.parts[0]
     theirs = plain(part, model, optics).reshape(128, 128)
     scene = piece_scene([part], model)
@@ -140,22 +143,24 @@ def _noise(shard: Shard, model: WeldModel, optics: Optics) -> None:
     fine = render(scene, optics, pixels, 64).radiance.reshape(128, 128)
     rough = render(scene, optics, pixels).radiance.reshape(128, 128)
     scale = float(np.median(theirs / fine))
-    shares = [float(np.sqrt(np.mean((image - fine) ** 2)) / fine.mean()) for image in (theirs / scale, rough)]
+    noise = [float(np.sqrt(np.mean((image - fine) ** 2)) / fine.mean()) for image in (theirs / scale, rough)]
     Console().print(
-        f"error against 64 rays a pixel with all emitters: plain script {shares[0]:.1%}, generator {shares[1]:.1%}"
+        "error compared with 64 rays per pixel to all emitters: "
+        f"plain script {noise[0]:.1%}, generator {noise[1]:.1%}"
     )
 
 
 def _parts_of_the_time(model: WeldModel, optics: Optics) -> None:
-    """Where the generator's time goes, one process with all threads."""
+    """Print where the time of the generator goes, in one process with all threads."""
     (shard,) = plan_pieces(6, quotas(PIECES_PER_SHARD), PAPER, ALL)
     piece_crops(shard.parts, model, optics)
     whole = _timed(lambda: piece_crops(shard.parts, model, optics))
-    meshes = _timed(lambda: [part_meshes(p, model) for p in shard.parts])
+    meshes = _timed(lambda: [part_meshes(part, model) for part in shard.parts])
     scene = _timed(lambda: piece_scene(shard.parts, model))
     Console().print(
-        f"of {whole / PIECES_PER_SHARD * 1000:.0f} ms a flat crop in one process: relief and meshes {meshes / whole:.0%}, "
-        f"textures {max(0.0, scene - meshes) / whole:.0%}, tree, rays and light, sensor {(whole - scene) / whole:.0%}"
+        f"of {whole / PIECES_PER_SHARD * 1000:.0f} ms per flat crop in one process: "
+        f"relief and meshes {meshes / whole:.0%}, textures {max(0.0, scene - meshes) / whole:.0%}, "
+        f"ray tracing, light and sensor {(whole - scene) / whole:.0%}"
     )
 
 

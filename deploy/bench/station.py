@@ -1,4 +1,4 @@
-"""Times of each step from trigger to RESULT_VALID on the emulated camera. `make bench`."""
+"""Measures each step from trigger to RESULT_VALID, with the emulated camera."""
 
 import argparse
 import asyncio
@@ -32,9 +32,14 @@ from synth.camera.feed import Feed
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run parts through the whole station and print median and p99 of each step."""
-    parser = argparse.ArgumentParser(prog="bench", description=__doc__)
-    parser.add_argument("--parts", type=int, default=100, help="number of parts (default: %(default)s)")
+    """Pass parts through the whole station, and print median and p99 of each step."""
+    parser = argparse.ArgumentParser(
+        prog="bench-station",
+        description="Measure each step from trigger to RESULT_VALID, with the emulated camera.",
+    )
+    parser.add_argument(
+        "--parts", type=int, default=100, metavar="N", help="number of parts (default: %(default)s)"
+    )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
         parser.error("--parts must be at least 1")
@@ -42,14 +47,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         try:
             answers, parts = measure(Path(folder), arguments.parts)
         except WeldgateError as error:
-            print(f"bench: {error}", file=sys.stderr)
+            print(f"bench-station: {error}", file=sys.stderr)
             return 2
     _print(answers, parts)
     return 0
 
 
 def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
-    """Judge `count` shipped frames in turn; what the line saw and what the engine told."""
+    """Judge `count` shipped frames, and return the results of the line and the events of the engine."""
     feed = Feed(folder / "feed", SERIAL)
     os.environ.update(feed.environment)
     settings = Settings.model_validate(
@@ -80,7 +85,7 @@ def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
         line.stop()
         alarm_log.close()
         archive.close()
-    return answers, [e for e in events if isinstance(e, PartEvent)]
+    return answers, [event for event in events if isinstance(event, PartEvent)]
 
 
 async def _drive(port: int, feed: Feed, count: int) -> list[Answer]:
@@ -101,19 +106,19 @@ async def _drive(port: int, feed: Feed, count: int) -> list[Answer]:
 def _print(answers: list[Answer], parts: list[PartEvent]) -> None:
     timings = [part.record.inspection.timing for part in parts]
     rows = (
-        ("grab", [t.grab_ms for t in timings]),
-        ("locate", [t.locate_ms for t in timings]),
-        ("unwrap and quality", [t.unwrap_ms for t in timings]),
-        ("classify", [t.classify_ms for t in timings]),
-        ("record", [p.record_ms for p in parts]),
-        ("publish", [p.publish_ms for p in parts]),
-        ("trigger to RESULT_VALID, as the line sees it", [a.trigger_to_valid_ms for a in answers]),
+        ("grab", [timing.grab_ms for timing in timings]),
+        ("locate", [timing.locate_ms for timing in timings]),
+        ("unwrap and quality", [timing.unwrap_ms for timing in timings]),
+        ("classify", [timing.classify_ms for timing in timings]),
+        ("record", [part.record_ms for part in parts]),
+        ("publish", [part.publish_ms for part in parts]),
+        ("trigger to RESULT_VALID, seen by the line", [answer.trigger_to_valid_ms for answer in answers]),
     )
     table = Table(
-        "step", "median ms", "p99 ms", title=f"{len(answers)} parts of 4200 x 2160 on the emulated camera"
+        "step", "median ms", "p99 ms", title=f"{len(answers)} frames of 4200 x 2160, emulated camera"
     )
     for name, values in rows:
-        known = [v for v in values if v is not None]
+        known = [value for value in values if value is not None]
         table.add_row(name, f"{np.median(known):.1f}", f"{np.percentile(known, 99):.1f}")
     Console().print(table)
 

@@ -1,1 +1,1 @@
-"""Proofs against misbehaving neighbours: PLCs, kills, windows that hang."""
+"""Stress tests: faulty PLCs, killed processes, hanging windows."""

@@ -1,4 +1,4 @@
-"""Stands in for the inspection where only the line is looked at: answers triggers in a thread, as the cycle would."""
+"""A judge replaces the inspection in tests of the line: it answers triggers in a thread, like the cycle."""
 
 import threading
 from collections.abc import Callable
@@ -8,10 +8,11 @@ from station.plc.map.registers import Flags, Offline, VerdictCode
 from station.plc.port import Health, Line, Result, Trigger
 
 WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=4711)
+"""Health of a station that works."""
 
 
 def judged(trigger: Trigger, verdict: VerdictCode, inspection_id: int | None = None) -> Result:
-    """Make up a result with low scores; its inspection number is that of the trigger if none is given."""
+    """Return a result with low scores; by default its inspection number is the number of the trigger."""
     return Result(
         trigger=trigger,
         verdict=verdict,
@@ -26,7 +27,7 @@ def judged(trigger: Trigger, verdict: VerdictCode, inspection_id: int | None = N
 
 
 class Judge:
-    """Runs between `with` and its end; `decide` gives the result of a trigger, which is offered at once."""
+    """Context manager that answers each trigger with the result of `decide`."""
 
     def __init__(self, line: Line, decide: Callable[[Trigger], Result]) -> None:
         self._line, self._decide = line, decide

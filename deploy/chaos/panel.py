@@ -1,7 +1,7 @@
-"""The window killed, restarted and stopped while parts pass: no part may be missed, and the cycle must not care.
+"""Kills, restarts and suspends the window while parts pass; no part may be missed, and none may take longer.
 
-Blocks of parts in turns, without a window, with one that is killed in the middle, with one that hangs (SIGSTOP), so that all three see
-the same machine.
+Blocks of parts alternate between three ways, so that all have the same conditions: without a window, with a
+window that is killed and restarted halfway, and with a window that hangs (SIGSTOP).
 """
 
 import argparse
@@ -30,40 +30,40 @@ from station.plc.simulated.line import SimulatedLine
 from synth.camera.feed import Feed
 
 WAYS = ("no window", "killed and restarted", "hanging")
+"""Ways in which the window is treated."""
 START_S = 3.0
-"""Until a window has opened."""
+"""Time in which a window opens."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, kw_only=True)
 class Report:
-    """What happened to the parts of one way."""
+    """Results of the parts of one way."""
 
     parts: int = 0
     missed: int = 0
-    """Without an OK or NOK inside the PLC's window."""
+    """Number of parts without OK or NOK in time."""
     valid_ms: list[float] = field(default_factory=list)
+    """Times from trigger to RESULT_VALID."""
 
     @property
     def p99_ms(self) -> float:
-        """Of trigger to RESULT_VALID."""
+        """99th percentile of the times from trigger to RESULT_VALID."""
         return float(np.percentile(self.valid_ms, 99))
 
 
 def run(folder: Path, blocks: int, parts: int) -> dict[str, Report]:
-    """`parts` in each block, `blocks` of each way. Raises WeldgateError."""
+    """Return the reports of `blocks` blocks of each way with `parts` parts each. Raises WeldgateError."""
     feed, ports = Feed(folder / "feed"), free_ports(4)
     settings = folder / "station.toml"
     settings.write_text(station_toml(folder / "records", *ports))
     command = [sys.executable, "-m", "station", "engine", "-c", str(settings)]
     with (folder / "engine.log").open("w") as log, running(command, {**os.environ, **feed.environment}, log):
-        return asyncio.run(_drive(feed, ports[0], settings, blocks, parts))
+        return asyncio.run(_drive(feed, ports[0], settings, blocks=blocks, parts=parts))
 
 
-async def _drive(feed: Feed, port: int, settings: Path, blocks: int, parts: int) -> dict[str, Report]:
-    line, reports = (
-        SimulatedLine.at("127.0.0.1", port, accept_simulated=True),
-        {way: Report() for way in WAYS},
-    )
+async def _drive(feed: Feed, port: int, settings: Path, *, blocks: int, parts: int) -> dict[str, Report]:
+    line = SimulatedLine.at("127.0.0.1", port, accept_simulated=True)
+    reports = {way: Report() for way in WAYS}
     images = [read_image(part.path) for part in shipped_parts()]
     await line.connect()
     await line.wait_ready(30.0)
@@ -71,7 +71,7 @@ async def _drive(feed: Feed, port: int, settings: Path, blocks: int, parts: int)
         for block in range(blocks):
             for way in WAYS:
                 window = None if way == "no window" else _open(settings)
-                await line.meanwhile(asyncio.sleep(START_S))  # in each way, so that all are alike
+                await line.meanwhile(asyncio.sleep(START_S))  # for every way, so that all are treated alike
                 if window is not None and way == "hanging":
                     window.send_signal(signal.SIGSTOP)
                 for number in range(parts):
@@ -101,34 +101,40 @@ def _open(settings: Path) -> "subprocess.Popen[bytes]":
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print the report; 0 if no part was missed and every part has its record."""
-    parser = argparse.ArgumentParser(prog="chaos-panel", description=__doc__)
-    parser.add_argument("--blocks", type=int, default=10, help="of each way (default: %(default)s)")
-    parser.add_argument("--parts", type=int, default=20, help="in each block (default: %(default)s)")
+    """Print the report; return 0 if no part was missed and every part has a record."""
+    parser = argparse.ArgumentParser(
+        prog="chaos-panel", description="Kill, restart and suspend the window while parts pass."
+    )
+    parser.add_argument(
+        "--blocks", type=int, default=10, metavar="N", help="number of blocks per way (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--parts", type=int, default=20, metavar="N", help="number of parts per block (default: %(default)s)"
+    )
     arguments = parser.parse_args(argv)
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="weldgate-") as name:
         reports = run(Path(name), arguments.blocks, arguments.parts)
         records = len(find(Path(name) / "records"))
-    table = Table("", *WAYS, title=f"{arguments.blocks} blocks of {arguments.parts} parts each, in turns")
-    plain = reports[WAYS[0]]
+    table = Table("", *WAYS, title=f"{arguments.blocks} alternating blocks of {arguments.parts} parts each")
+    plain, results = reports[WAYS[0]], list(reports.values())
     rows = [
-        ("parts", [str(r.parts) for r in reports.values()]),
-        ("missed", [str(r.missed) for r in reports.values()]),
+        ("parts", [str(report.parts) for report in results]),
+        ("missed", [str(report.missed) for report in results]),
         (
             "trigger to RESULT_VALID, median ms",
-            [f"{statistics.median(r.valid_ms):.0f}" for r in reports.values()],
+            [f"{statistics.median(report.valid_ms):.0f}" for report in results],
         ),
-        ("p99 ms", [f"{r.p99_ms:.0f}" for r in reports.values()]),
-        ("p99 beside no window", [f"{r.p99_ms / plain.p99_ms:.2f}" for r in reports.values()]),
+        ("p99 ms", [f"{report.p99_ms:.0f}" for report in results]),
+        ("p99 relative to no window", [f"{report.p99_ms / plain.p99_ms:.2f}" for report in results]),
     ]
     for name, values in rows:
         table.add_row(name, *values)
     console = Console(width=110)
     console.print(table)
-    total = sum(r.parts for r in reports.values())
+    total = sum(report.parts for report in results)
     console.print(f"{records} records of {total} parts, {time.monotonic() - start:.0f} s")
-    return 0 if records == total and not any(r.missed for r in reports.values()) else 1
+    return 0 if records == total and not any(report.missed for report in results) else 1
 
 
 if __name__ == "__main__":

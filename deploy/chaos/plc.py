@@ -1,7 +1,7 @@
-"""Thousands of parts between the station's line and the simulated PLC while both sides misbehave; proves that no OK is ever wrong.
+"""Passes thousands of parts while PLC and station both misbehave; proves that no part is falsely released.
 
-The pictures are left out: a judge answers by a list of truths, sometimes too late or with an error. Line, wire and PLC block are the
-production ones, over Modbus TCP on loopback.
+There are no images: a judge answers with random verdicts, sometimes too late or with an error. Line, Modbus
+code and PLC block are those of production, over Modbus TCP on loopback.
 """
 
 import argparse
@@ -30,61 +30,70 @@ from station.plc.simulated.windows import OwnWindows
 from station.settings.model import PlcSettings
 
 MODES = ("server", "client")
+"""Modbus roles of the station."""
 WINDOW_S = 1.5
+"""Time for which the PLC waits for a result."""
 KNOB_SHARE = 0.012
-"""Share of the parts in which each knob is turned."""
-LATE_SHARE, ERROR_SHARE, OK_SHARE = 0.005, 0.02, 0.6
+"""Fraction of the parts with which each fault is injected."""
+LATE_FRACTION, ERROR_FRACTION, OK_FRACTION = 0.005, 0.02, 0.6
+"""Fractions of late results, of errors, and of errors and OK together."""
 DEADLINE_MS = 300
+"""Deadline of the station."""
 SLACK = 1.0
-"""All time-outs are so many times as long: on a machine that is busy otherwise a thread may wait for some 100 ms to run."""
+"""Factor for all time-outs: on a busy machine a thread may wait some 100 ms until it runs."""
 SETTLED = 1
-"""Parts after a disturbed one that are not yet counted as undisturbed."""
+"""Number of parts after a disturbed one that still count as disturbed."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, kw_only=True)
 class Report:
-    """What happened in one mode."""
+    """Results of one mode."""
 
     mode: str
     parts: int = 0
     passed: int = 0
+    """Number of parts that the PLC accepted."""
     false_ok: int = 0
-    """OK for a part that was not judged OK."""
+    """Number of accepted parts that were not judged OK."""
     mismatched: int = 0
-    """A result taken for a part that it was not made for, or one that the station does not know of."""
+    """Number of accepted parts whose result belongs to another part or to none."""
     lost: int = 0
-    """An undisturbed part without its verdict."""
+    """Number of undisturbed parts that did not get their verdict."""
     knobs: Counter[str] = field(default_factory=Counter)
+    """Number of injections of each fault."""
     refused_by: Counter[str] = field(default_factory=Counter)
+    """Number of parts that were not accepted, by the condition that was not met."""
     valid_ms: list[float] = field(default_factory=list)
+    """Times from trigger to RESULT_VALID of undisturbed parts."""
 
     @property
     def good(self) -> bool:
-        """Whether nothing went wrong that must not."""
+        """True if no part was falsely released, mixed up or lost."""
         return self.false_ok == self.mismatched == self.lost == 0
 
 
 class Truths:
-    """Decides by chance, and remembers."""
+    """Random verdicts, and a record of them."""
 
     def __init__(self, seed: int) -> None:
         self._rng = random.Random(seed)
         self.made: dict[int, tuple[str, VerdictCode]] = {}
-        """Serial and verdict of each inspection id."""
+        """Serial and verdict by inspection number."""
         self.late: set[str] = set()
+        """Serials of the parts that were answered too late."""
 
     def decide(self, trigger: Trigger) -> Result:
-        """Sometimes too late, sometimes an error."""
-        late = self._rng.random() < LATE_SHARE
+        """Return a random result, sometimes an error, sometimes too late."""
+        late = self._rng.random() < LATE_FRACTION
         if late:
             self.late.add(trigger.serial)
         time.sleep(DEADLINE_MS * SLACK / 1000 * 1.3 if late else self._rng.uniform(0.0, 0.01))
         roll = self._rng.random()
         verdict = (
             VerdictCode.ERROR
-            if roll < ERROR_SHARE
+            if roll < ERROR_FRACTION
             else VerdictCode.OK
-            if roll < OK_SHARE
+            if roll < OK_FRACTION
             else VerdictCode.NOK
         )
         number = len(self.made) + 1
@@ -96,7 +105,7 @@ class Truths:
 
 
 def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
-    """Pass parts through one mode with failures rolled by the seed. Raises LineError."""
+    """Pass parts through one mode with random faults, and return the report. Raises LineError."""
     settings = PlcSettings(
         mode="server" if mode == "server" else "client",
         port=free_ports(1)[0],
@@ -118,15 +127,15 @@ def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
     try:
         truths = Truths(seed + 1)
         with Judge(line, truths.decide):
-            return asyncio.run(_drive(plc, truths, mode, parts, seed, progress))
+            return asyncio.run(_drive(plc, truths, mode, parts=parts, seed=seed, progress=progress))
     finally:
         line.stop()
 
 
 async def _drive(
-    plc: SimulatedLine, truths: Truths, mode: str, parts: int, seed: int, progress: bool
+    plc: SimulatedLine, truths: Truths, mode: str, *, parts: int, seed: int, progress: bool
 ) -> Report:
-    rng, report, calm = random.Random(seed), Report(mode), 0
+    rng, report, calm = random.Random(seed), Report(mode=mode), 0
     await plc.connect(10.0)
     try:
         for number in track(range(parts), description=mode, transient=True, disable=not progress):
@@ -134,14 +143,14 @@ async def _drive(
             serial = f"P{number:07d}"
             answer = await plc.inspect(serial, WINDOW_S * SLACK, knobs=knobs)
             calm = 0 if knobs or serial in truths.late else calm + 1
-            _note(report, answer, serial, knobs, truths, calm > SETTLED)
+            _note(report, answer, serial, knobs=knobs, truths=truths, undisturbed=calm > SETTLED)
     finally:
         await plc.close()
     return report
 
 
 def _note(
-    report: Report, answer: Answer, serial: str, knobs: frozenset[Knob], truths: Truths, undisturbed: bool
+    report: Report, answer: Answer, serial: str, *, knobs: frozenset[Knob], truths: Truths, undisturbed: bool
 ) -> None:
     report.parts += 1
     report.knobs.update(str(knob) for knob in knobs)
@@ -159,11 +168,27 @@ def _note(
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print the report; 0 if no OK was false and nothing was lost or mixed up."""
-    parser = argparse.ArgumentParser(prog="chaos-plc", description=__doc__)
-    parser.add_argument("--parts", type=int, default=10_000, help="in each mode (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="of the failures (default: %(default)s)")
-    parser.add_argument("--mode", choices=MODES, nargs="+", default=list(MODES))
+    """Print the report; return 0 if no part was falsely released, mixed up or lost."""
+    parser = argparse.ArgumentParser(
+        prog="chaos-plc", description="Pass thousands of parts while PLC and station both misbehave."
+    )
+    parser.add_argument(
+        "--parts",
+        type=int,
+        default=10_000,
+        metavar="N",
+        help="number of parts per mode (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=1, metavar="N", help="seed of verdicts and faults (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--mode",
+        choices=MODES,
+        nargs="+",
+        default=list(MODES),
+        help="Modbus role of the station (default: both)",
+    )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
         parser.error("--parts must be at least 1")
@@ -172,27 +197,29 @@ def main(argv: Sequence[str] | None = None) -> int:
     except WeldgateError as error:
         print(f"chaos-plc: {error}", file=sys.stderr)
         return 2
-    tell(reports, Console(width=110))
+    print_reports(reports, Console(width=110))
     return 0 if all(report.good for report in reports) else 1
 
 
-def tell(reports: Sequence[Report], console: Console) -> None:
-    """The report as a table."""
-    table = Table("", *(f"{r.mode} mode" for r in reports), title="PLC and station misbehaving")
+def print_reports(reports: Sequence[Report], console: Console) -> None:
+    """Print the reports as a table."""
+    table = Table("", *(f"{report.mode} mode" for report in reports), title="PLC and station misbehave")
     rows: list[tuple[str, list[str]]] = [
-        ("parts", [str(r.parts) for r in reports]),
-        ("passed", [str(r.passed) for r in reports]),
-        ("false OK", [str(r.false_ok) for r in reports]),
-        ("results matched to the wrong part", [str(r.mismatched) for r in reports]),
-        ("lost results", [str(r.lost) for r in reports]),
+        ("parts", [str(report.parts) for report in reports]),
+        ("passed", [str(report.passed) for report in reports]),
+        ("false OK", [str(report.false_ok) for report in reports]),
+        ("results matched to the wrong part", [str(report.mismatched) for report in reports]),
+        ("lost results", [str(report.lost) for report in reports]),
         (
             "trigger to RESULT_VALID, median ms",
-            [f"{statistics.median(r.valid_ms):.1f}" if r.valid_ms else "-" for r in reports],
+            [f"{statistics.median(own.valid_ms):.1f}" if own.valid_ms else "-" for own in reports],
         ),
     ]
-    rows += [(f"knob: {knob}", [str(r.knobs[str(knob)]) for r in reports]) for knob in Knob]
-    why = sorted({name for r in reports for name in r.refused_by})
-    rows += [(f"refused: {name}", [str(r.refused_by[name]) for r in reports]) for name in why]
+    rows += [(f"fault: {fault}", [str(report.knobs[str(fault)]) for report in reports]) for fault in Knob]
+    conditions = sorted({name for report in reports for name in report.refused_by})
+    rows += [
+        (f"refused: {name}", [str(report.refused_by[name]) for report in reports]) for name in conditions
+    ]
     for name, values in rows:
         table.add_row(name, *values)
     console.print(table)

@@ -1,4 +1,4 @@
-"""Eight hours of events in fast motion through the window: its memory must stay flat, no widget, thread or connection be left behind."""
+"""Sends eight hours of events to the window in fast motion; its memory, widgets and threads must not grow."""
 
 import argparse
 import gc
@@ -45,23 +45,24 @@ from station.settings.file import load
 from station.settings.model import Settings
 
 HOURS, PACE_S, STATUSES = 8, 2.0, 8
-"""A part every two seconds, four status events a second."""
+"""Duration that is simulated, seconds from part to part, and status events per part."""
 ROUNDS = 10
+"""Number of measurements."""
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """What the process holds."""
+    """Resources that the process uses."""
 
     memory_mb: float
     widgets: int
     threads: int
     files: int
-    """Open files and sockets."""
+    """Number of open files and sockets."""
 
     @staticmethod
     def now() -> "Level":
-        """Linux alone."""
+        """Return the current use of resources; works on Linux only."""
         gc.collect()
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         files = len(list(Path("/proc/self/fd").iterdir()))
@@ -74,7 +75,7 @@ class Level:
 
 
 def soak(folder: Path, parts: int) -> list[Level]:
-    """Levels after each tenth of the parts; needs an application."""
+    """Return the levels after each tenth of the parts; a QApplication must exist."""
     path = folder / "station.toml"
     path.write_text(station_toml(folder / "records", *free_ports(4)))
     settings = load(path)
@@ -101,7 +102,7 @@ def soak(folder: Path, parts: int) -> list[Level]:
                 )
                 for info in PAGES:
                     window.go(info.key)
-                _until_heard(window, number)
+                _until_received(window, number)
                 levels.append(Level.now())
     finally:
         window.close()
@@ -110,7 +111,7 @@ def soak(folder: Path, parts: int) -> list[Level]:
 
 
 def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEvent, Preview]]:
-    """One real part with its record and picture."""
+    """Return the record and the events of one real part."""
     loaded = prepare(settings, 1)
     image = read_image(shipped_parts()[0].path)
     archive = Archive(settings.archive)
@@ -121,7 +122,7 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
         inspection,
         Part("SOAK", 1, Origin.SIMULATED),
         loaded.provenance,
-        frame.grabbed_at,
+        now=frame.grabbed_at,
     )
     archive.close()
     words = tuple(
@@ -164,20 +165,26 @@ def _live(milliseconds: int) -> None:
     loop.exec()
 
 
-def _until_heard(window: Window, number: int) -> None:
+def _until_received(window: Window, number: int) -> None:
     for _ in range(200):
         last = window.session.received.last
         if last is not None and last.record.inspection_id == number:
             return
         _live(20)
-    raise TimeoutError("the window did not hear all parts")
+    raise TimeoutError("the window did not receive all parts")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print the levels; 0 if they stay flat over the second half."""
-    parser = argparse.ArgumentParser(prog="soak-panel", description=__doc__)
+    """Print the levels; return 0 if they do not grow in the second half."""
+    parser = argparse.ArgumentParser(
+        prog="soak-panel", description="Send eight hours of events to the window in fast motion."
+    )
     parser.add_argument(
-        "--parts", type=int, default=int(HOURS * 3600 / PACE_S), help="default: %(default)s, eight hours"
+        "--parts",
+        type=int,
+        default=int(HOURS * 3600 / PACE_S),
+        metavar="N",
+        help="number of parts (default: %(default)s, which is eight hours)",
     )
     arguments = parser.parse_args(argv)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
@@ -186,17 +193,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         levels = soak(Path(name), arguments.parts)
     for index, level in enumerate(levels, 1):
         print(
-            f"{index * 10:3d} %  {level.memory_mb:6.1f} MB  {level.widgets} widgets  {level.threads} threads  {level.files} files"
+            f"{index * 10:3d} %  {level.memory_mb:6.1f} MB  {level.widgets} widgets  "
+            f"{level.threads} threads  {level.files} files"
         )
     half, last = levels[len(levels) // 2 - 1], levels[-1]
-    grown = last.memory_mb - half.memory_mb
-    print(f"second half: {grown:+.1f} MB")
+    growth_mb = last.memory_mb - half.memory_mb
+    print(f"second half: {growth_mb:+.1f} MB")
     app.quit()
-    return (
-        0
-        if grown < 5 and (last.widgets, last.threads, last.files) <= (half.widgets, half.threads, half.files)
-        else 1
-    )
+    flat = (last.widgets, last.threads, last.files) <= (half.widgets, half.threads, half.files)
+    return 0 if growth_mb < 5 and flat else 1
 
 
 if __name__ == "__main__":

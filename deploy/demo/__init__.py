@@ -1,1 +1,1 @@
-"""The demo: emulated camera, rendered parts, simulated line and the station, with one command."""
+"""The demo: runs the station with an emulated camera, rendered parts and a simulated line."""

@@ -1,4 +1,4 @@
-"""Free ports on loopback, for a station and its neighbours on one machine."""
+"""Finds free ports on loopback for the demo, the benchmarks and the tests."""
 
 import atexit
 import os
@@ -6,14 +6,14 @@ import socket
 from collections import deque
 
 RESERVED = 64
-"""Number of ports that are kept free for servers that are still starting."""
+"""Number of ports that stay reserved for servers that are still starting."""
 _reserved: deque[socket.socket] = deque()
 
 
 def free_ports(count: int) -> list[int]:
-    """Return ports on loopback that the system has free, kept from all other processes until `RESERVED` more have been asked for.
+    """Return free ports on loopback that no other process gets until `RESERVED` more have been requested.
 
-    On POSIX a socket that is bound but does not listen keeps a port from being given away, and lets a server have it.
+    On POSIX a socket that is bound but does not listen reserves a port, and a server can still listen on it.
     """
     if not _reserved:
         atexit.register(_give_back)

@@ -1,6 +1,6 @@
-"""weldgate-demo: emulated camera, rendered parts, simulated line and the station, with one command.
+"""`weldgate-demo`: runs the whole station against a simulated line, with an emulated camera.
 
-The station runs unmodified in its own process: production camera code, production Modbus code.
+The station runs unmodified in its own process, with the camera and Modbus code of production.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from rich.console import Console
 
 from deploy.demo.ports import free_ports
 from deploy.demo.station import SERIAL, running, shipped_parts, station_toml
-from deploy.demo.summary import DemoPart, Judged, count, summarise, tell, write_json
+from deploy.demo.summary import DemoPart, Judged, count, print_part, summarise, write_json
 from station.errors import LineError, WeldgateError
 from station.files.installation import room_command
 from station.plc.simulated.line import SimulatedLine
@@ -31,38 +31,49 @@ from synth.camera.feed import Feed
 from synth.errors import SynthError
 
 RENDER_PATIENCE_S = 120.0
+"""Maximum time to wait for one rendered part."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the demo; 0 if every part was judged and none escaped, 1 if not, 2 if it could not run."""
+    """Run the demo and return its exit code.
+
+    The code is 0 if every part was judged and there was no escape, 1 if not, 2 if the demo could not run.
+    """
     parser = argparse.ArgumentParser(
-        prog="weldgate-demo", description="The whole station against a simulated line, on rendered parts."
+        prog="weldgate-demo",
+        description="Run the whole station against a simulated line, on rendered parts of known truth.",
     )
-    parser.add_argument("--headless", action="store_true", help="no window, even if there is a display")
-    parser.add_argument("--parts", type=int, default=24, help="number of parts (default: %(default)s)")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the results")
+    parser.add_argument("--headless", action="store_true", help="open no window, even if there is a display")
+    parser.add_argument(
+        "--parts", type=int, default=24, metavar="N", help="number of parts (default: %(default)s)"
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON")
     parser.add_argument(
         "--records",
         type=Path,
         default=Path("demo-records"),
         metavar="DIR",
-        help="where records go (default: %(default)s)",
+        help="write the records to this archive folder (default: %(default)s)",
     )
     parser.add_argument(
-        "--seed", type=int, default=7, help="seed of the freshly rendered parts (default: %(default)s)"
+        "--seed",
+        type=int,
+        default=7,
+        metavar="N",
+        help="seed of the parts that are rendered in addition to the shipped frames (default: %(default)s)",
     )
     parser.add_argument(
         "--pace",
         type=float,
         default=0.0,
         metavar="S",
-        help="seconds between parts (default: as fast as it goes; 2 with a window)",
+        help="seconds between parts (default: 2 with a window, no pause without)",
     )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
         parser.error("--parts must be at least 1")
     if arguments.json is not None and not arguments.json.resolve().parent.is_dir():
-        parser.error(f"--json {arguments.json}: its folder does not exist")
+        parser.error(f"--json {arguments.json}: the folder does not exist")
     try:
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
         return _run(arguments, Console())
@@ -97,13 +108,23 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
             )
             time.sleep(1.0)
             if panel.poll() is not None:
-                console.print(
-                    f"[yellow]the window could not be opened, going on without: {_last_line(folder / 'panel.log')}[/]"
-                )
+                reason = _last_line(folder / "panel.log")
+                console.print(f"[yellow]window could not be opened, continuing without it: {reason}[/]")
         stopping = threading.Event()
-        parts = _parts(arguments.parts, folder / "fresh", renderer, console, stopping)
+        parts = _parts(
+            arguments.parts, folder / "fresh", renderer=renderer, console=console, stopping=stopping
+        )
         judged = asyncio.run(
-            _drive(ports[0], feed, parts, stopping, engine, folder / "engine.log", pace_s, console)
+            _drive(
+                ports[0],
+                feed,
+                parts,
+                stopping=stopping,
+                engine=engine,
+                log=folder / "engine.log",
+                pace_s=pace_s,
+                console=console,
+            )
         )
     summarise(judged, records, console)
     if arguments.json is not None:
@@ -127,38 +148,39 @@ def _renderer(out: Path, count: int, seed: int) -> "Iterator[subprocess.Popen[by
 def _parts(
     count: int,
     fresh: Path,
+    *,
     renderer: "subprocess.Popen[bytes] | None",
     console: Console,
     stopping: threading.Event,
 ) -> Iterator[DemoPart]:
-    """Shipped frames first, then fresh ones as they come."""
+    """Yield the shipped frames, then rendered frames as they become ready."""
     shipped = shipped_parts()[:count]
     yield from shipped
     seen: set[str] = set()
-    wanted = count - len(shipped)
-    while len(seen) < wanted:
+    total = count - len(shipped)
+
+    def unseen() -> list[Path]:
+        return sorted(path for path in (fresh / "frames").glob("part_*.json") if path.stem not in seen)
+
+    while len(seen) < total:
         waited_s = time.monotonic()
-        with console.status(f"rendering part {len(seen) + 1} of {wanted}") as status:
-            while not (
-                ready := sorted(p for p in (fresh / "frames").glob("part_*.json") if p.stem not in seen)
-            ):
+        with console.status(f"rendering part {len(seen) + 1} of {total}") as status:
+            while not (ready := unseen()):
                 dead = renderer is None or renderer.poll() is not None
                 late = stopping.is_set() or time.monotonic() - waited_s > RENDER_PATIENCE_S
-                if late or (
-                    dead and not any(p.stem not in seen for p in (fresh / "frames").glob("part_*.json"))
-                ):
+                if late or (dead and not unseen()):
                     raise SynthError(
                         "the renderer stopped; run 'weldgate-synth part --out DIR --count 1' to see why"
                     )
-                status.update(f"rendering part {len(seen) + 1} of {wanted}  {_bar(len(seen), wanted)}")
+                status.update(f"rendering part {len(seen) + 1} of {total}  {_bar(len(seen), total)}")
                 time.sleep(0.05)
         for path in ready:
             seen.add(path.stem)
             yield DemoPart(path.stem, path.with_suffix(".png"), json.loads(path.read_text())["truth"])
 
 
-def _bar(done: int, of: int) -> str:
-    filled = round(20 * done / of)
+def _bar(done: int, total: int) -> str:
+    filled = round(20 * done / total)
     return "█" * filled + "░" * (20 - filled)
 
 
@@ -166,6 +188,7 @@ async def _drive(
     port: int,
     feed: Feed,
     parts: Iterator[DemoPart],
+    *,
     stopping: threading.Event,
     engine: "subprocess.Popen[bytes]",
     log: Path,
@@ -187,7 +210,7 @@ async def _drive(
             if engine.poll() is not None:
                 raise WeldgateError(f"the engine stopped: {_last_line(log)}")
             judged.append(Judged(part, await line.inspect(part.name)))
-            tell(judged, console)
+            print_part(judged, console)
             await line.meanwhile(asyncio.sleep(pace_s))
     finally:
         stopping.set()
@@ -211,7 +234,7 @@ async def _bring_up(line: SimulatedLine, engine: "subprocess.Popen[bytes]", log:
 
 def _last_line(log: Path) -> str:
     lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
-    return lines[-1] if lines else "it said nothing"
+    return lines[-1] if lines else "its log is empty"
 
 
 if __name__ == "__main__":

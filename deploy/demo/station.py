@@ -1,4 +1,4 @@
-"""A station that needs no hardware: shipped frames, settings with the emulated camera, processes that end again."""
+"""A station without hardware: shipped frames, settings with the emulated camera, and its processes."""
 
 import json
 import signal
@@ -11,22 +11,25 @@ from deploy.demo.summary import DemoPart
 from station.files.installation import ROOMS_FOLDER, SHIPPED_NETWORKS
 
 SHIPPED_FRAMES = ROOMS_FOLDER / "deploy" / "frames"
+"""Lot of rendered frames that is shipped with weldgate."""
 SERIAL = "0815-0000"
 """Serial number of the emulated camera."""
 
 
 def shipped_parts() -> list[DemoPart]:
-    """The few rendered frames that come with the project."""
+    """Return the rendered frames that are shipped with weldgate."""
     labels = json.loads((SHIPPED_FRAMES / "labels.json").read_text())["frames"]
     return [
         DemoPart(Path(item["frame"]).stem, SHIPPED_FRAMES / item["frame"], item["truth"]) for item in labels
     ]
 
 
-def station_toml(
-    records: Path, plc_port: int, events_port: int, preview_port: int, requests_port: int
-) -> str:
-    """Settings of a station with the emulated camera and the shipped networks."""
+def station_toml(records: Path, *ports: int) -> str:
+    """Return the settings of a station with the emulated camera and the shipped networks.
+
+    `ports` are those of PLC, events, preview and requests.
+    """
+    plc_port, events_port, preview_port, requests_port = ports
     good = next(part.path for part in shipped_parts() if part.truth == "OK")
     return f"""
 [camera]
@@ -40,7 +43,7 @@ self_test_path = {json.dumps(str(good))}
 self_test_verdict = "OK"
 [plc]
 port = {plc_port}
-deadline_ms = 3500  # a slow or busy machine needs it; the line's window is 4 s
+deadline_ms = 3500  # for slow or busy machines; the line waits 4 s
 [archive]
 folder = {json.dumps(str(records))}
 [channel]
@@ -54,7 +57,7 @@ requests_port = {requests_port}
 def running(
     command: list[str], environment: dict[str, str], log: object
 ) -> "Iterator[subprocess.Popen[bytes]]":
-    """A process that is ended afterwards."""
+    """Start a process and stop it at the end."""
     process = subprocess.Popen(
         command, env=environment, stdout=log, stderr=subprocess.STDOUT, cwd=ROOMS_FOLDER
     )  # type: ignore[call-overload]

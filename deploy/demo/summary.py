@@ -1,4 +1,4 @@
-"""What the demo tells: a line for each part, a table at the end, a JSON file."""
+"""Output of the demo: one line per part, a table at the end, and a JSON file."""
 
 import json
 from dataclasses import dataclass
@@ -16,6 +16,7 @@ from station.plc.map.registers import VerdictCode
 from station.plc.simulated.line import Answer
 
 REASONS = {reason.code: str(reason) for reason in Reason}
+"""Texts of the reasons by PLC code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,36 +26,37 @@ class DemoPart:
     name: str
     path: Path
     truth: str
+    """OK, or the name of the defect."""
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What the line got for one part."""
+    """One part with the result that the line received."""
 
     part: DemoPart
     answer: Answer
 
     @property
     def verdict(self) -> str:
-        """OK only if the PLC accepted the part by all points of its rule."""
+        """Verdict for the part; OK only if the PLC accepted it by all conditions of its rule."""
         if self.answer.accepted:
             return Verdict.OK
         return Verdict.NOK if self.answer.verdict is VerdictCode.NOK else Verdict.ERROR
 
     @property
     def escape(self) -> bool:
-        """A defective part released."""
+        """True if a defective part was judged OK."""
         return self.part.truth != "OK" and self.verdict == Verdict.OK
 
     @property
     def false_reject(self) -> bool:
-        """A good part refused."""
+        """True if a good part was judged NOK."""
         return self.part.truth == "OK" and self.verdict == Verdict.NOK
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Totals:
-    """Parts counted."""
+    """Counts of parts, errors and handshakes of one run."""
 
     parts: int
     escapes: int
@@ -64,37 +66,40 @@ class Totals:
 
     @property
     def good(self) -> bool:
-        """Every part judged and answered, none escaped."""
+        """True if every part was judged, its handshake was complete, and there was no escape."""
         return not self.escapes and not self.errors and self.handshakes_complete == self.parts
 
 
 def count(judged: list[Judged]) -> Totals:
-    """Totals of a run."""
+    """Return the totals of a run."""
     return Totals(
-        len(judged),
-        sum(j.escape for j in judged),
-        sum(j.false_reject for j in judged),
-        sum(j.verdict == Verdict.ERROR for j in judged),
-        sum(j.answer.handshake_complete for j in judged),
+        parts=len(judged),
+        escapes=sum(part.escape for part in judged),
+        false_rejects=sum(part.false_reject for part in judged),
+        errors=sum(part.verdict == Verdict.ERROR for part in judged),
+        handshakes_complete=sum(part.answer.handshake_complete for part in judged),
     )
 
 
-def tell(judged: list[Judged], console: Console) -> None:
-    """One line for the last part."""
+def print_part(judged: list[Judged], console: Console) -> None:
+    """Print one line for the last part."""
     last = judged[-1]
     style = {"OK": "green", "NOK": "red"}.get(last.verdict, "yellow")
     mark = "[bold red]ESCAPE[/]" if last.escape else "[yellow]false reject[/]" if last.false_reject else ""
     took = "-" if last.answer.trigger_to_valid_ms is None else f"{last.answer.trigger_to_valid_ms:.0f} ms"
     reason = REASONS.get(last.answer.reason, last.answer.refused_by if last.verdict == "ERROR" else "") or ""
+    verdict = f"[{style}]{last.verdict:5}[/]"
     console.print(
-        f"{len(judged):4d}  {last.part.name:16}  is {last.part.truth:13} judged [{style}]{last.verdict:5}[/] {reason:14} {took:>8}  {mark}"
+        f"{len(judged):4d}  {last.part.name:16}  is {last.part.truth:13} judged {verdict} "
+        f"{reason:14} {took:>8}  {mark}"
     )
 
 
 def summarise(judged: list[Judged], records: Path, console: Console) -> None:
-    """Table at the end."""
+    """Print a table with the totals."""
     totals = count(judged)
-    times = sorted(j.answer.trigger_to_valid_ms for j in judged if j.answer.trigger_to_valid_ms is not None)
+    taken_ms = (part.answer.trigger_to_valid_ms for part in judged)
+    times = sorted(ms for ms in taken_ms if ms is not None)
     wrong = totals.escapes + totals.false_rejects
     table = Table(title="weldgate demo", show_header=False)
     for name, value in (
@@ -116,18 +121,18 @@ def summarise(judged: list[Judged], records: Path, console: Console) -> None:
 
 
 def write_json(path: Path, judged: list[Judged], records: Path) -> None:
-    """The whole report, or nothing."""
+    """Write the results as JSON, atomically. Raises OSError."""
     totals = count(judged)
     report: dict[str, Any] = {
         "parts": [
             {
-                "part": j.part.name,
-                "truth": j.part.truth,
-                "verdict": j.verdict,
-                "reason": REASONS.get(j.answer.reason),
-                "trigger_to_valid_ms": j.answer.trigger_to_valid_ms,
+                "part": part.part.name,
+                "truth": part.part.truth,
+                "verdict": part.verdict,
+                "reason": REASONS.get(part.answer.reason),
+                "trigger_to_valid_ms": part.answer.trigger_to_valid_ms,
             }
-            for j in judged
+            for part in judged
         ],
         "escapes": totals.escapes,
         "false_rejects": totals.false_rejects,

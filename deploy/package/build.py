@@ -1,6 +1,6 @@
-"""Puts all rooms into the one package `weldgate` for a wheel; an editable install keeps the folders.
+"""Puts all rooms into the one package `weldgate` of a wheel; an editable install uses the folders themselves.
 
-setuptools loads this file, which pyproject.toml names, on its own: it imports nothing of weldgate.
+setuptools loads this file, which pyproject.toml names, separately: it imports nothing of weldgate.
 """
 
 from pathlib import Path
@@ -12,14 +12,14 @@ PRODUCT = "weldgate"
 
 
 class BuildRooms(build_py):  # type: ignore[misc]  # setuptools has no types
-    """Copies station, synth, models and deploy to weldgate/station and so on."""
+    """Build step that copies station, synth, models and deploy to weldgate/station and so on."""
 
     packages: list[str]
     package_dir: dict[str, str]
     package_data: dict[str, list[str]]
 
     def finalize_options(self) -> None:
-        """Give each package its name in the wheel."""
+        """Set the name of each package in the wheel."""
         super().finalize_options()
         if self.editable_mode or not self.packages:
             return
@@ -30,9 +30,9 @@ class BuildRooms(build_py):  # type: ignore[misc]  # setuptools has no types
 
 
 class Metadata(egg_info):  # type: ignore[misc]  # setuptools has no types
-    """Leaves out the list of top-level names: it would hold those of the folders."""
+    """Build step that omits the list of top-level names, which would contain the folders' names."""
 
     def run(self) -> None:
-        """Write the metadata."""
+        """Write the metadata without the list of top-level names."""
         super().run()
         Path(self.egg_info, "top_level.txt").unlink(missing_ok=True)

@@ -104,7 +104,7 @@ def export(network: WeldNet, path: Path, contract: Contract) -> None:
         expected = [np.asarray(t.numpy(), np.float64) for t in whole(crops)]
     judged = Classifier(part)(crops.numpy()[:, 0])
     scores = np.array([(s.ok, *s.defects.values()) for s in judged.scores])
-    pairs = zip(expected, (scores, judged.maps, judged.looks), strict=True)
+    pairs = zip(expected, (scores, judged.maps, judged.appearances), strict=True)
     keep(part, path, max(largest_gap(a, b) for a, b in pairs))
 
 

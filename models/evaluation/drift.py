@@ -119,7 +119,7 @@ def _judge(
     for image, strip in zip(drifted, strips, strict=True):
         judged = classifier(segments(image))
         novel.append(judged.novelty > classifier.card.novelty_limit)
-        looks.append(judged.looks.mean(axis=0, dtype=np.float64))
+        looks.append(judged.appearances.mean(axis=0, dtype=np.float64))
         for index in range(SEGMENTS):
             label = strip.label_at(index * SEGMENT_PX)
             if label != IGNORED:

@@ -1,1 +1,1 @@
-"""What many records say together: statistics, what-if, exports, reports."""
+"""Evaluates many records together: statistics, what-if, exports and reports."""

@@ -1,4 +1,4 @@
-"""What was decided of each segment, by the limits that the record itself names."""
+"""Decides on the segments of a record again, with the limits in the record itself."""
 
 from station.classify.decision import segment_kind
 from station.defects import DefectKind
@@ -6,7 +6,7 @@ from station.records import Record
 
 
 def defect_kinds(record: Record) -> list[DefectKind | None]:
-    """Return the kind of defect seen in each segment, also where it was small enough to be tolerated."""
+    """Return the kind of defect in each segment, including defects that were tolerated, or None."""
     limits = record.provenance.thresholds
     return [
         segment_kind(scores, limits.of_segment(index))

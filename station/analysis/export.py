@@ -1,4 +1,4 @@
-"""Records in the forms of others: CSV, JSON, Parquet, class folders of crops, Q-DAS ASCII."""
+"""Exports records as CSV, JSON, Parquet, Q-DAS ASCII, or as folders of crops by class."""
 
 import csv
 import json
@@ -21,19 +21,27 @@ from station.records import Record
 from station.vision.unwrap import segments, unwrap
 
 OK_FOLDER = "ok"
+"""Folder of the crops without a defect."""
 SEPARATOR, ADDITIONAL = "\x0f", "\x14"
-"""Q-DAS ASCII transfer format: between characteristics, and between a value and what belongs to it."""
+"""Separators of the Q-DAS ASCII transfer format: between characteristics, and between a value and its
+additions."""
 
 
 def export(
-    entries: Iterable[Listed], folder: Path, target: Path, form: str, going: Callable[[], bool] = lambda: True
+    entries: Iterable[Listed],
+    folder: Path,
+    target: Path,
+    form: str,
+    *,
+    keep_going: Callable[[], bool] = lambda: True,
 ) -> Iterator[tuple[Path, str]]:
-    """Write readable records to `target`; yields the others as (file, problem). Raises RecordError, OSError.
+    """Write the readable records to `target`, and yield (file, problem) for the others.
 
-    Crops are written while `going`, asked before each part, says so; else what was written is taken away again.
+    `form` is one of `station.analysis.forms.FORMATS`. An export of crops calls `keep_going` before each part;
+    if it returns False, everything that was written is deleted. Raises RecordError, OSError.
     """
     if target.exists():
-        raise RecordError(f"{target}: exists already; name another file or folder")
+        raise RecordError(f"{target}: already exists; name another file or folder")
     good, bad = [], []
     for entry in entries:
         if entry.record is None or (form in ("dataset", "reviewed") and entry.problem is not None):
@@ -42,8 +50,8 @@ def export(
             good.append(entry)
     if form in ("dataset", "reviewed"):
         try:
-            bad += list((_dataset if form == "dataset" else _reviewed)(good, folder, target, going))
-        except _Stopped:
+            bad += list((_dataset if form == "dataset" else _reviewed)(good, folder, target, keep_going))
+        except _Cancelled:
             shutil.rmtree(target)
             return
     else:
@@ -53,12 +61,12 @@ def export(
 
 
 def flat(entry: Listed) -> dict[str, Any]:
-    """One record as one row: numbers and words, the score of NOK of each segment."""
+    """Return one record as one row of a table, with the score of NOK of each segment."""
     record = entry.record
     if record is None:
         raise RecordError(f"{entry.path}: {entry.problem}")
     inspection, ring = record.inspection, record.inspection.ring
-    worst = max(inspection.findings, key=lambda f: f.score, default=None)
+    worst = max(inspection.findings, key=lambda finding: finding.score, default=None)
     row: dict[str, Any] = {
         "inspection_id": record.inspection_id,
         "serial": record.serial,
@@ -86,7 +94,7 @@ def flat(entry: Listed) -> dict[str, Any]:
 
 
 def _scores(inspection: Inspection) -> list[float | None]:
-    return [s.nok for s in inspection.scores] or [None] * SEGMENTS
+    return [scores.nok for scores in inspection.scores] or [None] * SEGMENTS
 
 
 def _csv(target: Path, entries: list[Listed]) -> None:
@@ -99,8 +107,9 @@ def _csv(target: Path, entries: list[Listed]) -> None:
 
 def _json(target: Path, entries: list[Listed]) -> None:
     rows = [
-        flat(e) | {"all_findings": [asdict(f) for f in e.record.inspection.findings] if e.record else []}
-        for e in entries
+        flat(entry)
+        | {"all_findings": [asdict(own) for own in entry.record.inspection.findings] if entry.record else []}
+        for entry in entries
     ]
     target.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
@@ -109,16 +118,18 @@ def _parquet(target: Path, entries: list[Listed]) -> None:
     try:
         from pyarrow import Table, parquet
     except ImportError:
-        raise RecordError("Parquet needs the package pyarrow: pip install 'weldgate[parquet]'") from None
+        raise RecordError(
+            "Parquet needs the package pyarrow; install it with pip install 'weldgate[parquet]'"
+        ) from None
     parquet.write_table(Table.from_pylist([flat(entry) for entry in entries]), target)
 
 
-class _Stopped(Exception):
-    """Nobody wants it any longer."""
+class _Cancelled(Exception):
+    """The export was cancelled."""
 
 
 Kinds = dict[int, DefectKind | None]
-"""What to call the crops of a part, by the number of the segment; those of other segments are left out."""
+"""Kind of defect of the crops of a part by segment number; crops of other segments are not exported."""
 
 
 def _as_judged(record: Record) -> Kinds:
@@ -130,19 +141,20 @@ def _all_ok(record: Record) -> Kinds:
 
 
 def _reviewed(
-    entries: list[Listed], folder: Path, target: Path, going: Callable[[], bool]
+    entries: list[Listed], folder: Path, target: Path, keep_going: Callable[[], bool]
 ) -> Iterator[tuple[Path, str]]:
-    """The same of parts that two people agree on.
+    """Write the crops of the parts on which two people agree, like `_dataset`.
 
-    Where they say it was a false call, all crops are ok; of a missed defect only the crops in which both see the same kind.
+    If the verdict was a false call, all crops are ok. If a defect was missed, only the crops in which both
+    people see the same kind of defect are written.
     """
     known = reviews(folder)
 
-    def said(opinion: Opinion) -> list[Listed]:
+    def agreed_on(opinion: Opinion) -> list[Listed]:
         return [
-            e
-            for e in entries
-            if e.row.inspection_id in known and known[e.row.inspection_id].agreed is opinion
+            entry
+            for entry in entries
+            if entry.row.inspection_id in known and known[entry.row.inspection_id].agreed is opinion
         ]
 
     def as_seen(record: Record) -> Kinds:
@@ -151,36 +163,40 @@ def _reviewed(
         }
 
     missed = []
-    for entry in said(Opinion.MISSED):
+    for entry in agreed_on(Opinion.MISSED):
         if known[entry.row.inspection_id].agreed_marks:
             missed.append(entry)
         else:
             yield (
                 entry.path,
-                "a defect was missed: the two do not see the same kind in any segment, its crops are left out",
+                "not exported: a defect was missed, but the two reviews name no segment with the same kind",
             )
-    for those, kinds in (
-        (said(Opinion.RIGHT), _as_judged),
-        (said(Opinion.FALSE_CALL), _all_ok),
+    for chosen, kinds in (
+        (agreed_on(Opinion.RIGHT), _as_judged),
+        (agreed_on(Opinion.FALSE_CALL), _all_ok),
         (missed, as_seen),
     ):
-        yield from _dataset(those, folder, target, going, kinds)
+        yield from _dataset(chosen, folder, target, keep_going, kinds=kinds)
 
 
 def _dataset(
     entries: list[Listed],
     folder: Path,
     target: Path,
-    going: Callable[[], bool],
+    keep_going: Callable[[], bool],
+    *,
     kinds: Callable[[Record], Kinds] = _as_judged,
 ) -> Iterator[tuple[Path, str]]:
-    """A folder each for ok and the kinds of defect: crops by what the station found, for people to correct before training."""
+    """Write the crops of judged parts into one folder per class: ok, and each kind of defect.
+
+    By default the class is what the station found; people correct it before training.
+    """
     for name in (OK_FOLDER, *(kind.name for kind in KINDS)):
         (target / name).mkdir(parents=True, exist_ok=True)
     for entry in entries:
         record = entry.record
-        if not going():
-            raise _Stopped
+        if not keep_going():
+            raise _Cancelled
         if record is None or record.inspection.ring is None or not record.inspection.scores:
             continue  # nothing was judged
         if entry.row.frame_state != "kept":
@@ -200,8 +216,8 @@ def _dataset(
 
 
 def _dfq(target: Path, entries: list[Listed]) -> None:
-    """Q-DAS ASCII transfer format: part, 21 characteristics (score of NOK of each segment), one line of values a part."""
-    judged = [e for e in entries if e.record is not None and e.record.inspection.scores]
+    """Write Q-DAS ASCII: part, 21 characteristics (scores of NOK), one line of values per part."""
+    judged = [entry for entry in entries if entry.record is not None and entry.record.inspection.scores]
     lines = [f"K0100 {SEGMENTS}", "K1001 weldgate", "K1002 circular laser weld"]
     for i in range(1, SEGMENTS + 1):
         lines += [
@@ -219,7 +235,8 @@ def _dfq(target: Path, entries: list[Listed]) -> None:
     for entry in judged:
         if entry.record is not None:
             when = _qdas_time(entry.record.grabbed_at)
-            values = [f"{s.nok:.4f}{ADDITIONAL}0{ADDITIONAL}{when}" for s in entry.record.inspection.scores]
+            scores = entry.record.inspection.scores
+            values = [f"{own.nok:.4f}{ADDITIONAL}0{ADDITIONAL}{when}" for own in scores]
             lines.append(SEPARATOR.join(values))
     target.write_bytes(("\r\n".join(lines) + "\r\n").encode("cp1252", "replace"))
 

@@ -1,4 +1,4 @@
-"""Names of the forms that records are exported in."""
+"""Names of the export formats."""
 
 FORMATS = ("csv", "json", "parquet", "dataset", "reviewed", "dfq")
-"""Tables; crops by what was judged, or by what two people agree on; Q-DAS ASCII."""
+"""Three tables; crops by the station's decisions, or by the reviews of two people; Q-DAS ASCII."""

@@ -1,4 +1,4 @@
-"""What many parts say together; pure."""
+"""Statistics of many parts; pure."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -12,28 +12,30 @@ SHIFTS_H = (6, 14, 22)
 """Local hours at which shifts begin; the third runs over midnight."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Point:
-    """One part in the trends."""
+    """Values of one part in the trends."""
 
     number: int
+    """Inspection number of the part."""
     verdict: Verdict
     worst: float | None
     """Highest score of NOK."""
     mean_dn: float | None
     sharpness: float | None
     saturated: float | None
-    """Share of the pixels."""
+    """Fraction of saturated pixels."""
     novelty: float | None
     cycle_ms: float
+    """Time for grabbing and inspecting the part."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Group:
-    """Parts of one shift and recipe."""
+    """Counts of the parts of one shift and recipe."""
 
     shift: str
-    """Day and number, as 2026-11-22 / 2."""
+    """Day and number of the shift, such as 2026-11-22 / 2."""
     recipe: int
     ok: int
     nok: int
@@ -41,27 +43,28 @@ class Group:
 
     @property
     def yield_share(self) -> float:
-        """OK of all parts, also of those not judged."""
+        """Fraction of OK parts among all parts, including those that were not judged."""
         return self.ok / (self.ok + self.nok + self.error)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """All of it."""
+    """Summary of many parts."""
 
     groups: tuple[Group, ...]
+    """Counts per shift and recipe, latest shift first."""
     reasons: tuple[tuple[str, int], ...]
-    """The most frequent first."""
+    """Reasons with their counts, most frequent first."""
     segments: tuple[int, ...]
-    """How often each of the 21 was refused."""
+    """Number of rejections of each of the 21 segments."""
     points: tuple[Point, ...]
-    """In order of the numbers."""
+    """Values of the parts in order of their numbers."""
     thresholds: tuple[float, ...]
-    """Of the newest part."""
+    """Thresholds of the newest part."""
 
 
 def shift_of(when: datetime) -> str:
-    """Day and number of the shift of a local time; after midnight it is still the day before."""
+    """Return day and number of the shift of a local time; a night shift belongs to the day it began on."""
     hour = when.hour
     number = sum(hour >= start for start in SHIFTS_H)
     day = when.toordinal() - (number == 0)
@@ -69,14 +72,14 @@ def shift_of(when: datetime) -> str:
 
 
 def summarise(records: Iterable[Record]) -> Summary:
-    """Of parts alone: masters and test pictures do not count."""
+    """Return the summary of all records of parts; masters and test images do not count."""
     counts: dict[tuple[str, int], Counter[Verdict]] = {}
     reasons: Counter[str] = Counter()
     segments, points, newest = [0] * SEGMENTS, [], None
     for record in records:
         if record.purpose is not Purpose.PART:
             continue
-        inspection, t = record.inspection, record.inspection.timing
+        inspection, timing, quality = record.inspection, record.inspection.timing, record.inspection.quality
         newest = record if newest is None or record.inspection_id > newest.inspection_id else newest
         key = (shift_of(record.grabbed_at.astimezone()), record.provenance.recipe)
         counts.setdefault(key, Counter())[record.verdict] += 1
@@ -84,28 +87,34 @@ def summarise(records: Iterable[Record]) -> Summary:
             reasons[str(inspection.reason)] += 1
         for index, kind in enumerate(inspection.rejected):
             segments[index] += kind is not None
-        q = inspection.quality
+        steps_ms = (timing.grab_ms, timing.locate_ms, timing.unwrap_ms, timing.classify_ms)
         points.append(
             Point(
-                record.inspection_id,
-                record.verdict,
-                max((s.nok for s in inspection.scores), default=None),
-                None if q is None else q.mean_dn,
-                None if q is None else q.sharpness,
-                None if q is None else q.saturated_share,
-                inspection.novelty,
-                sum(ms for ms in (t.grab_ms, t.locate_ms, t.unwrap_ms, t.classify_ms) if ms is not None),
+                number=record.inspection_id,
+                verdict=record.verdict,
+                worst=max((scores.nok for scores in inspection.scores), default=None),
+                mean_dn=None if quality is None else quality.mean_dn,
+                sharpness=None if quality is None else quality.sharpness,
+                saturated=None if quality is None else quality.saturated_share,
+                novelty=inspection.novelty,
+                cycle_ms=sum(ms for ms in steps_ms if ms is not None),
             )
         )
     groups = (
-        Group(*key, c[Verdict.OK], c[Verdict.NOK], c[Verdict.ERROR])
-        for key, c in sorted(counts.items(), reverse=True)
+        Group(
+            shift=shift,
+            recipe=recipe,
+            ok=count[Verdict.OK],
+            nok=count[Verdict.NOK],
+            error=count[Verdict.ERROR],
+        )
+        for (shift, recipe), count in sorted(counts.items(), reverse=True)
     )
     limits = () if newest is None else tuple(limit.threshold for limit in newest.provenance.thresholds.kinds)
     return Summary(
-        tuple(groups),
-        tuple(reasons.most_common()),
-        tuple(segments),
-        tuple(sorted(points, key=lambda p: p.number)),
-        limits,
+        groups=tuple(groups),
+        reasons=tuple(reasons.most_common()),
+        segments=tuple(segments),
+        points=tuple(sorted(points, key=lambda point: point.number)),
+        thresholds=limits,
     )

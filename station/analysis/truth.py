@@ -1,4 +1,4 @@
-"""What the parts really were, where somebody knows it; and both kinds of error against it."""
+"""Compares verdicts with the truth, where it is known: escapes and false rejects."""
 
 import csv
 import json
@@ -9,38 +9,43 @@ from pathlib import Path
 from station.errors import RecordError
 
 VERDICTS = ("OK", "NOK")
-HINT = 'a CSV with the columns name and verdict, or JSON {"name": "OK"}, is needed; verdicts are OK and NOK'
+"""Verdicts that a truth can have."""
+HINT = 'give a CSV with the columns name and verdict, or JSON {"name": "OK"}; verdicts are OK and NOK'
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Errors:
-    """Judged parts whose truth is known."""
+    """Errors among the parts whose truth is known."""
 
     ok: int
-    """Truly OK."""
+    """Number of parts that are truly OK."""
     nok: int
+    """Number of parts that are truly NOK."""
     escapes: tuple[str, ...]
-    """NOK parts that were judged OK."""
+    """Names of the NOK parts that were judged OK."""
     false_rejects: tuple[str, ...]
-    """OK parts that were judged NOK."""
+    """Names of the OK parts that were judged NOK."""
     not_judged: tuple[str, ...]
+    """Names of the parts that were not judged."""
 
 
-def errors(truth: Mapping[str, str], said: Mapping[str, str]) -> Errors:
-    """`said`: verdict of each name; names without a truth do not count."""
-    known = {name: (truth[name], verdict) for name, verdict in said.items() if name in truth}
+def errors(truth: Mapping[str, str], verdicts: Mapping[str, str]) -> Errors:
+    """Return the errors of verdicts by name; names without a truth do not count."""
+    known = {name: (truth[name], verdict) for name, verdict in verdicts.items() if name in truth}
     return Errors(
-        sum(true == "OK" for true, _ in known.values()),
-        sum(true == "NOK" for true, _ in known.values()),
-        tuple(name for name, pair in known.items() if pair == ("NOK", "OK")),
-        tuple(name for name, pair in known.items() if pair == ("OK", "NOK")),
-        tuple(name for name, (_, verdict) in known.items() if verdict not in VERDICTS),
+        ok=sum(true == "OK" for true, _ in known.values()),
+        nok=sum(true == "NOK" for true, _ in known.values()),
+        escapes=tuple(name for name, pair in known.items() if pair == ("NOK", "OK")),
+        false_rejects=tuple(name for name, pair in known.items() if pair == ("OK", "NOK")),
+        not_judged=tuple(name for name, (_, verdict) in known.items() if verdict not in VERDICTS),
     )
 
 
 def interval(hits: int, trials: int) -> tuple[float, float]:
-    """95 % confidence interval of a share (Clopper and Pearson, 1934); (0, 1) without trials."""
-    from scipy.stats import binomtest  # takes most of a second, which the window's start would have
+    """Return the 95 % confidence interval (Clopper and Pearson, 1934) of a fraction; (0, 1) if no trials."""
+    from scipy.stats import (
+        binomtest,
+    )  # imported here: it takes most of a second, and the window must start fast
 
     if not trials:
         return 0.0, 1.0
@@ -49,7 +54,7 @@ def interval(hits: int, trials: int) -> tuple[float, float]:
 
 
 def read_truth(path: Path) -> dict[str, str]:
-    """Verdict of each name: a serial, or the name of a file. Raises RecordError."""
+    """Return the true verdict of each name, which is a serial or a file name. Raises RecordError."""
     try:
         text = path.read_text(encoding="utf-8-sig")
         pairs = _of_json(text) if path.suffix.lower() == ".json" else _of_csv(text)
@@ -62,9 +67,9 @@ def read_truth(path: Path) -> dict[str, str]:
         if verdict not in VERDICTS:
             raise RecordError(f"{path}: {name!r} is {verdict!r}; {HINT}")
         if truth.setdefault(name, verdict) != verdict:
-            raise RecordError(f"{path}: {name!r} is said to be OK and NOK")
+            raise RecordError(f"{path}: conflicting truth for {name!r}: both OK and NOK; remove one of them")
     if not truth:
-        raise RecordError(f"{path}: holds no parts; {HINT}")
+        raise RecordError(f"{path}: contains no parts; {HINT}")
     return truth
 
 

@@ -1,7 +1,8 @@
-"""What other limits would have made of the parts of the archive: which verdicts flip, both ways; pure.
+"""What-if: which verdicts of recorded parts would flip with other limits, in both directions; pure.
 
-Scores near the old threshold were seen twice (mirrored), others once: close to a new threshold a part judged anew may differ, which
-`weldgate replay` tells exactly. What was not refused before has no length, and is never tolerated.
+Scores near the old threshold are averages over mirrored crops, other scores are not. So close to a new
+threshold a part that is judged again may get another verdict; `weldgate replay` gives the exact result. A
+segment that was not rejected has no measured length, so it is never tolerated.
 """
 
 from collections.abc import Iterable
@@ -16,36 +17,39 @@ from station.settings.model import QualitySettings
 from station.vision.quality import gate
 
 QUALITY = (Reason.TOO_DARK, Reason.TOO_BRIGHT, Reason.BLURRED)
+"""Reasons of the image quality gate."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Flip:
-    """A part that would have got another verdict."""
+    """A part whose verdict would flip."""
 
     inspection_id: int
     serial: str
     before: Verdict
     after: Verdict
     segment: int
-    """1 to 21: the one with the highest score of NOK."""
+    """Number of the segment with the highest score of NOK, 1 to 21."""
     score: float
+    """Score of NOK of this segment."""
 
 
 @dataclass(frozen=True, slots=True)
 class WhatIf:
-    """Of parts with scores."""
+    """Result of a what-if."""
 
     looked_at: int
+    """Number of parts with scores."""
     released: tuple[Flip, ...]
-    """NOK or not judged before, OK now."""
+    """Parts that were NOK or not judged, and would be OK."""
     refused: tuple[Flip, ...]
-    """OK before, NOK or not judged now."""
+    """Parts that were OK, and would be NOK or not judged."""
     unknown: int
-    """Were too poor to be judged and would be judged now: nobody knows how."""
+    """Number of parts without scores that would pass the new quality gate; their verdict is unknown."""
 
 
 def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualitySettings) -> WhatIf:
-    """Of parts alone: masters and test pictures do not count."""
+    """Return what other limits would change for the recorded parts; masters and test images do not count."""
     looked_at, unknown = 0, 0
     released: list[Flip] = []
     refused: list[Flip] = []
@@ -64,12 +68,12 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
             continue
         worst = max(range(len(inspection.scores)), key=lambda i: inspection.scores[i].nok)
         flip = Flip(
-            record.inspection_id,
-            record.serial,
-            record.verdict,
-            after,
-            worst + 1,
-            inspection.scores[worst].nok,
+            inspection_id=record.inspection_id,
+            serial=record.serial,
+            before=record.verdict,
+            after=after,
+            segment=worst + 1,
+            score=inspection.scores[worst].nok,
         )
         (released if after is Verdict.OK else refused).append(flip)
     return WhatIf(looked_at, tuple(released), tuple(refused), unknown)

@@ -1,1 +1,1 @@
-"""The archive: a folder of records and their index; nothing in it is ever changed, only the oldest is let go."""
+"""The archive: a folder of records with an index. Records never change; retention deletes the oldest."""

@@ -1,4 +1,4 @@
-"""Lets the oldest go: first pictures by kind of part, then whole records; small steps, so that the engine never waits for it."""
+"""Deletes frames and records after their retention, in small steps so that the engine never waits for it."""
 
 import hashlib
 import logging
@@ -18,15 +18,18 @@ from station.settings.model import KeepSettings
 log = logging.getLogger("weldgate.archive")
 
 STEP = 50
-"""Records in one transaction."""
+"""Number of records in one transaction."""
 EVERY_S = 3600.0
+"""Interval of the engine's pruning."""
 GIB = 1 << 30
+"""Bytes in a GiB."""
 STRANGE = timedelta(days=7)
+"""Age of the newest record above which the clock is assumed to be wrong."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pruned:
-    """What was let go, or would be."""
+    """Number and size of the frames and records that were deleted, or would be."""
 
     frames: int = 0
     records: int = 0
@@ -37,41 +40,42 @@ class Pruned:
 
 
 def prune(
-    folder: Path, keep: KeepSettings, now: datetime, dry: bool = False, stop: threading.Event | None = None
+    folder: Path, keep: KeepSettings, now: datetime, *, dry: bool = False, stop: threading.Event | None = None
 ) -> Pruned:
-    """Let go what is older than `keep` says, and the oldest pictures beyond the quota.
+    """Delete frames and records past their retention, and the oldest frames above the quota.
 
-    Nothing goes while the newest record is more than a week old: then rather the clock is wrong. Raises RecordError.
+    With `dry`, nothing is deleted. Nothing is deleted either if the newest record is more than a week old:
+    then the clock is probably wrong. Raises RecordError.
     """
     if not (folder / NAME).is_file():
-        raise RecordError(f"{folder}: no records here ({NAME} is missing); name an archive folder")
+        raise RecordError(f"{folder}: no records found ({NAME} is missing); name an archive folder")
     try:
         with closing(sqlite3.connect(folder / NAME, timeout=5.0, isolation_level=None)) as index:
             newest = index.execute("SELECT MAX(grabbed_at) FROM records").fetchone()[0]
             if newest is None or now - datetime.fromisoformat(newest) > STRANGE:
                 return Pruned()
             work = _Work(folder, index, dry, stop or threading.Event())
-            work.remove_left()
+            work.remove_leftovers()
             done = Pruned()
             for condition, days in _old_frames(keep):
-                done += work.let_frames_go(condition, _first_young(index, now - timedelta(days=days)), None)
-            excess = work.kept_bytes() - keep.quota_gib * GIB
+                done += work.delete_frames(condition, _first_young(index, now - timedelta(days=days)), None)
+            excess = work.stored_bytes() - keep.quota_gib * GIB
             for condition in ("verdict = 'OK'", "verdict = 'ERROR'", "1"):
                 if excess > 0:
-                    more = work.let_frames_go(condition, 1 << 62, excess)
+                    more = work.delete_frames(condition, 1 << 62, excess)
                     done, excess = done + more, excess - more.bytes
-            return done + work.let_records_go(_first_young(index, now - timedelta(days=keep.record_days)))
+            return done + work.delete_records(_first_young(index, now - timedelta(days=keep.record_days)))
     except (sqlite3.Error, OSError) as error:
         raise RecordError(f"{folder}: could not be pruned ({error})") from None
 
 
-def sampled(inspection_id: int, share: float) -> bool:
-    """Whether an OK part is one of those whose picture is kept longer: the same answer for the same number, on any machine."""
-    return int.from_bytes(hashlib.sha256(str(inspection_id).encode()).digest()[:4], "big") < share * 2**32
+def sampled(inspection_id: int, fraction: float) -> bool:
+    """Return whether the frame of an OK part is kept longer; depends on nothing but the two arguments."""
+    return int.from_bytes(hashlib.sha256(str(inspection_id).encode()).digest()[:4], "big") < fraction * 2**32
 
 
 def _old_frames(keep: KeepSettings) -> list[tuple[str, int]]:
-    """Which pictures go after how many days."""
+    """Return conditions on the frames, each with its retention in days."""
     return [
         (f"verdict = 'OK' AND NOT sampled(inspection_id, {float(keep.ok_share)})", keep.ok_all_days),
         ("verdict = 'OK'", keep.ok_days),
@@ -81,7 +85,10 @@ def _old_frames(keep: KeepSettings) -> list[tuple[str, int]]:
 
 
 def _first_young(index: sqlite3.Connection, when: datetime) -> int:
-    """Number of the first record that is not older: those before it are, whatever a wrong clock wrote into single ones."""
+    """Return the number of the first record that is not older than `when`.
+
+    All records before it count as older, even if a wrong clock gave some of them a later time.
+    """
     row = index.execute(
         "SELECT MIN(inspection_id) FROM records WHERE grabbed_at >= ?", (when.isoformat(),)
     ).fetchone()
@@ -89,32 +96,35 @@ def _first_young(index: sqlite3.Connection, when: datetime) -> int:
 
 
 class _Work:
-    """One run over an index. What goes is written down before it is removed, so that a stop in between leaves nothing behind."""
+    """One run over an index. The names of files are noted before they are deleted, so that an interrupted run
+    leaves no files behind."""
 
     def __init__(self, folder: Path, index: sqlite3.Connection, dry: bool, stop: threading.Event) -> None:
         self._folder, self._index, self._dry, self._stop = folder, index, dry, stop
-        self._gone: set[int] = set()
-        """Numbers whose pictures went in this run."""
+        self._deleted: set[int] = set()
+        """Numbers of the records whose frames were deleted in this run."""
         index.create_function("sampled", 2, sampled, deterministic=True)
 
-    def remove_left(self) -> None:
-        """Files that a run before wrote down and did not come to remove."""
+    def remove_leftovers(self) -> None:
+        """Delete the files that an interrupted run noted but did not delete."""
         if not self._dry:
             for (name,) in self._index.execute("SELECT name FROM to_remove").fetchall():
                 self._remove(name)
 
-    def kept_bytes(self) -> int:
-        """Of all pictures that stay."""
+    def stored_bytes(self) -> int:
+        """Return the size of all frames that remain."""
         rows = self._index.execute(
-            "SELECT inspection_id, frame_file FROM records WHERE frame_state = 'kept' AND frame_file IS NOT NULL"
+            "SELECT inspection_id, frame_file FROM records "
+            "WHERE frame_state = 'kept' AND frame_file IS NOT NULL"
         )
-        return sum(_size(self._folder / name) for number, name in rows if number not in self._gone)
+        return sum(_size(self._folder / name) for number, name in rows if number not in self._deleted)
 
-    def let_frames_go(self, condition: str, before: int, enough_bytes: float | None) -> Pruned:
-        """Pictures of records before a number, the oldest first, until there are enough."""
+    def delete_frames(self, condition: str, before: int, enough_bytes: float | None) -> Pruned:
+        """Delete frames of records before a number, the oldest first, until `enough_bytes` are freed."""
         done, after = Pruned(), 0
         query = (
-            "SELECT inspection_id, frame_file FROM records WHERE frame_state = 'kept' AND frame_file IS NOT NULL "
+            "SELECT inspection_id, frame_file FROM records "
+            "WHERE frame_state = 'kept' AND frame_file IS NOT NULL "
             f"AND inspection_id > ? AND inspection_id < ? AND {condition} ORDER BY 1 LIMIT {STEP}"
         )
         while not self._stop.is_set() and (enough_bytes is None or done.bytes < enough_bytes):
@@ -123,11 +133,11 @@ class _Work:
             chosen = []
             for number, name in rows:
                 after = number
-                if number in self._gone or (enough_bytes is not None and done.bytes >= enough_bytes):
+                if number in self._deleted or (enough_bytes is not None and done.bytes >= enough_bytes):
                     continue
                 chosen.append((number, name))
                 done += Pruned(1, 0, _size(self._folder / name))
-            self._gone |= {number for number, _ in chosen}
+            self._deleted |= {number for number, _ in chosen}
             if not self._dry:
                 marks = [(number,) for number, _ in chosen]
                 self._index.executemany(
@@ -138,8 +148,8 @@ class _Work:
                 break
         return done
 
-    def let_records_go(self, before: int) -> Pruned:
-        """The records before a number: the rest of the chain begins where they end."""
+    def delete_records(self, before: int) -> Pruned:
+        """Delete the records before a number; the remaining chain starts where theirs ended."""
         done, after = Pruned(), 0
         while not self._stop.is_set():
             self._begin()
@@ -149,7 +159,7 @@ class _Work:
                 (after, before),
             ).fetchall()
             names = [row[1] for row in rows] + [
-                row[2] for row in rows if row[2] is not None and row[0] not in self._gone
+                row[2] for row in rows if row[2] is not None and row[0] not in self._deleted
             ]
             done += Pruned(0, len(rows), sum(_size(self._folder / name) for name in names))
             if rows and not self._dry:
@@ -193,7 +203,7 @@ def _size(path: Path) -> int:
 
 
 class Housekeeping:
-    """Prunes at the start and every hour in a thread of its own, beside the engine."""
+    """A thread of the engine that prunes the archive at the start and then every hour."""
 
     def __init__(self, folder: Path, keep: KeepSettings) -> None:
         self._folder, self._keep = folder, keep
@@ -202,7 +212,7 @@ class Housekeeping:
         self._thread.start()
 
     def close(self) -> None:
-        """End; at most one step of pruning is still done."""
+        """End the thread; a step of pruning in progress is completed."""
         self._stop.set()
         self._thread.join(timeout=10)
 
@@ -212,13 +222,13 @@ class Housekeeping:
                 done = prune(self._folder, self._keep, datetime.now(UTC), stop=self._stop)
                 if done.frames or done.records:
                     log.info(
-                        "let go: %d pictures, %d records, %.1f GB",
+                        "archive pruned: %d frames and %d records deleted, %.1f GB",
                         done.frames,
                         done.records,
                         done.bytes / 1e9,
                     )
             except RecordError as error:
                 log.error("%s", error)
-            except Exception:  # the thread must live: without it the disk fills
-                log.exception("pruning ended with a fault")
+            except Exception:  # the thread must survive: without it the disk fills up
+                log.exception("the archive could not be pruned")
             self._stop.wait(EVERY_S)

@@ -1,4 +1,4 @@
-"""Finds and reads records."""
+"""Searches, reads and verifies the records of an archive."""
 
 import hashlib
 import sqlite3
@@ -17,31 +17,31 @@ from station.files.sqlite import CHAIN_START
 from station.records import Record, from_json
 
 WRITTEN_S = 1.0
-"""A record is listed at the latest so long after its files are there."""
+"""Maximum time from the writing of a record's files to its row in the index."""
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """What is looked for; None: anything."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Query:
+    """Conditions of a search for records; None means any value."""
 
     number: int | None = None
     serial: str | None = None
-    """Exactly, or its beginning with * behind it."""
+    """Exact serial, or a prefix followed by *."""
     since: datetime | None = None
     until: datetime | None = None
     verdict: str | None = None
     reason: str | None = None
     segment: int | None = None
-    """1 to 21, together with `min_score`."""
+    """Number of a segment, 1 to 21, whose score is at least `min_score`."""
     min_score: float | None = None
-    """Score of NOK, at least 0.05: of the segment, or of the worst."""
+    """Minimum score of NOK, 0.05 or higher, of the segment or else of the worst segment."""
     purpose: str | None = None
     recipe: int | None = None
     newest_first: bool = False
     limit: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
     """One row of the index."""
 
@@ -54,11 +54,11 @@ class Row:
     worst_score: float | None
     frame_file: str | None
     frame_state: str
-    """kept, thinned (left out for lack of room), pruned (let go), none (no picture came)."""
+    """kept, thinned (not stored for lack of space), pruned (deleted) or none (there was no frame)."""
     record_file: str
     record_sha256: str
     shown_to_plc: bool | None
-    """None: the station stopped before it could tell."""
+    """True if the PLC could read the verdict; None if the station stopped before it could note this."""
     purpose: str
     recipe: int
     chain: str | None
@@ -66,7 +66,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """One entry of the index: the record if it can be read, and what is wrong with it, if anything."""
+    """One entry of the index, with its record if it can be read, and its problem if it has one."""
 
     row: Row
     path: Path
@@ -75,17 +75,17 @@ class Listed:
 
     @property
     def shown_to_plc(self) -> bool | None:
-        """None: the station stopped before it could tell."""
+        """True if the PLC could read the verdict; None if the station stopped before it could note this."""
         return self.row.shown_to_plc
 
 
-def find(folder: Path, wanted: Wanted = Wanted()) -> list[Row]:
-    """Rows in order of their number. Raises RecordError if the folder holds no archive."""
-    joined = wanted.segment is not None
-    conditions, values = _conditions(wanted)
+def find(folder: Path, query: Query = Query()) -> list[Row]:
+    """Return the matching rows by number. Raises RecordError if the folder is not an archive."""
+    joined = query.segment is not None
+    conditions, values = _conditions(query)
     where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
-    order = " ORDER BY r.inspection_id" + (" DESC" if wanted.newest_first else "")
-    limit = "" if wanted.limit is None else f" LIMIT {int(wanted.limit)}"
+    order = " ORDER BY r.inspection_id" + (" DESC" if query.newest_first else "")
+    limit = "" if query.limit is None else f" LIMIT {int(query.limit)}"
     names = ", ".join(f"r.{name}" for name in Row.__slots__)
     join = " JOIN segments s ON s.inspection_id = r.inspection_id" if joined else ""
     with closing(read_index(folder)) as connection:
@@ -106,52 +106,55 @@ def find(folder: Path, wanted: Wanted = Wanted()) -> list[Row]:
     ]
 
 
-def _conditions(wanted: Wanted) -> tuple[list[str], list[str | float]]:
+def _conditions(query: Query) -> tuple[list[str], list[str | float]]:
     chosen: list[tuple[str, str | float | None]] = [
-        ("r.inspection_id = ?", wanted.number),
-        ("r.grabbed_at >= ?", None if wanted.since is None else wanted.since.isoformat()),
-        ("r.grabbed_at < ?", None if wanted.until is None else wanted.until.isoformat()),
-        ("r.verdict = ?", wanted.verdict),
-        ("r.reason = ?", wanted.reason),
-        ("r.purpose = ?", wanted.purpose),
-        ("r.recipe = ?", wanted.recipe),
-        ("s.segment = ?", wanted.segment),
-        ("s.p_nok >= ?" if wanted.segment is not None else "r.worst_score >= ?", wanted.min_score),
+        ("r.inspection_id = ?", query.number),
+        ("r.grabbed_at >= ?", None if query.since is None else query.since.isoformat()),
+        ("r.grabbed_at < ?", None if query.until is None else query.until.isoformat()),
+        ("r.verdict = ?", query.verdict),
+        ("r.reason = ?", query.reason),
+        ("r.purpose = ?", query.purpose),
+        ("r.recipe = ?", query.recipe),
+        ("s.segment = ?", query.segment),
+        ("s.p_nok >= ?" if query.segment is not None else "r.worst_score >= ?", query.min_score),
     ]
-    if wanted.serial is not None and wanted.serial.endswith("*"):
-        chosen += [("r.serial >= ?", wanted.serial[:-1]), ("r.serial < ?", wanted.serial[:-1] + "\U0010ffff")]
+    if query.serial is not None and query.serial.endswith("*"):
+        chosen += [("r.serial >= ?", query.serial[:-1]), ("r.serial < ?", query.serial[:-1] + "\U0010ffff")]
     else:
-        chosen.append(("r.serial = ?", wanted.serial))
+        chosen.append(("r.serial = ?", query.serial))
     return [condition for condition, value in chosen if value is not None], [
         value for _, value in chosen if value is not None
     ]
 
 
-def read_records(folder: Path, wanted: Wanted = Wanted()) -> Iterator[Listed]:
-    """Records in order of their number, each with what is wrong with its files. Raises RecordError if the folder holds no archive."""
-    for row in find(folder, wanted):
+def read_records(folder: Path, query: Query = Query()) -> Iterator[Listed]:
+    """Yield the matching records in order of their number, each with its problem if it has one.
+
+    Raises RecordError if the folder is not an archive.
+    """
+    for row in find(folder, query):
         record, problem = read_record(folder, row)
         yield Listed(row, folder / row.record_file, record, problem)
 
 
 def read_record(folder: Path, row: Row) -> tuple[Record | None, str | None]:
-    """A record and what is wrong with it or its frame, if anything."""
+    """Return a record, or None if it cannot be read, and the problem of the record or its frame, or None."""
     record, problem = read_words(folder, row)
     return record, problem if record is None else _frame_problem(folder, row, record)
 
 
 def read_words(folder: Path, row: Row) -> tuple[Record | None, str | None]:
-    """A record, or why it cannot be read; its frame is not looked at."""
+    """Return a record and None, or None and why it cannot be read; its frame is not checked."""
     try:
         text = (folder / row.record_file).read_bytes()
     except OSError as error:
         return None, f"cannot be read ({error.strerror})"
     if hashlib.sha256(text).hexdigest() != row.record_sha256:
-        return None, "was changed after it was written"
+        return None, "was modified after it was written"
     try:
         return from_json(text), None
     except ValidationError:
-        return None, "is not a record of this version"
+        return None, "is not a record of a known version"
 
 
 def _frame_problem(folder: Path, row: Row, record: Record) -> str | None:
@@ -164,23 +167,23 @@ def _frame_problem(folder: Path, row: Row, record: Record) -> str | None:
     return (
         None
         if hashlib.sha256(png).hexdigest() == record.frame_sha256
-        else f"its frame {row.frame_file} was changed"
+        else f"its frame {row.frame_file} was modified"
     )
 
 
 def verify(folder: Path) -> Iterator[tuple[str, str]]:
-    """(file or place, what is wrong) for all that is missing, altered or taken out; an engine may go on meanwhile.
+    """Yield (file or place, problem) for everything that is missing, modified or deleted.
 
-    Raises RecordError if there is no archive.
+    The engine may continue to write records meanwhile. Raises RecordError if the folder is not an archive.
     """
-    (chain, before), rows = _let_go(folder), find(folder)
+    (chain, before), rows = _last_pruned(folder), find(folder)
     if rows and before > rows[0].inspection_id:
-        raise RecordError(f"{folder}: is being pruned; verify again")
+        raise RecordError(f"{folder}: the archive is being pruned; verify it again")
     for row in rows:
-        if row.inspection_id != before + 1 and _let_go(folder)[1] < row.inspection_id - 1:
-            yield f"records {before + 1} to {row.inspection_id - 1}", "were taken out of the index"
+        if row.inspection_id != before + 1 and _last_pruned(folder)[1] < row.inspection_id - 1:
+            yield f"records {before + 1} to {row.inspection_id - 1}", "were deleted from the index"
         for problem in _problems(folder, row, chain):
-            if find(folder, Wanted(number=row.inspection_id)) == [row]:  # not let go meanwhile
+            if find(folder, Query(number=row.inspection_id)) == [row]:  # not pruned meanwhile
                 yield row.record_file, problem
         chain, before = row.chain or CHAIN_START, row.inspection_id
     listed = {name for row in rows for name in (row.record_file, row.frame_file) if name is not None}
@@ -191,15 +194,15 @@ def verify(folder: Path) -> Iterator[tuple[str, str]]:
             and not path.name.endswith(".part")
             and not _being_written(folder, path, before)
         ):
-            yield name, "is not listed: left by a stop in the middle of a part, or put here"
+            yield name, "is not in the index: left over from an interrupted part, or added later"
 
 
 def _being_written(folder: Path, path: Path, last: int) -> bool:
-    """Whether an engine goes on meanwhile: a file after the last row is listed a moment later."""
+    """Return whether the engine is just writing this file: then it is in the index a moment later."""
     if not path.stem.isdecimal() or int(path.stem) <= last:
         return False
     until = time.monotonic() + WRITTEN_S
-    while not find(folder, Wanted(number=int(path.stem))):
+    while not find(folder, Query(number=int(path.stem))):
         if time.monotonic() > until:
             return False
         time.sleep(0.02)
@@ -212,7 +215,7 @@ def _problems(folder: Path, row: Row, chain: str) -> Iterator[str]:
         yield problem
     if record is not None:
         inspection = record.inspection
-        said = (
+        recorded = (
             record.serial,
             record.trigger_id,
             record.grabbed_at.isoformat(),
@@ -221,16 +224,17 @@ def _problems(folder: Path, row: Row, chain: str) -> Iterator[str]:
         )
         listed = (row.serial, row.trigger_id, row.grabbed_at, row.verdict, row.frame_file)
         reason = None if inspection.reason is None else str(inspection.reason)
-        if said != listed or (reason, str(record.purpose)) != (row.reason, row.purpose):
-            yield "is listed with other words than it says itself: the index was altered"
+        if recorded != listed or (reason, str(record.purpose)) != (row.reason, row.purpose):
+            yield "does not match its entry in the index; the index was modified"
     if row.chain is not None:
         if row.chain != link(chain, row.record_sha256):
-            yield "does not follow the record before it: something here was taken out or exchanged"
+            yield "does not follow the previous record; a record was deleted or replaced here"
         elif record is not None and record.chain_before != chain:
-            yield "names another record before it"
+            yield "names a different previous record"
 
 
-def _let_go(folder: Path) -> tuple[str, int]:
+def _last_pruned(folder: Path) -> tuple[str, int]:
+    """Return chain and number of the last record that was pruned."""
     with closing(read_index(folder)) as connection:
         try:
             row = connection.execute(

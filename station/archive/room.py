@@ -1,4 +1,4 @@
-"""How much room the disk has, in three levels."""
+"""Free space of the archive's disk, as one of four levels."""
 
 import shutil
 import time
@@ -6,35 +6,36 @@ from enum import IntEnum
 
 from station.settings.model import ArchiveSettings
 
-LOOK_S = 1.0
+CHECK_INTERVAL_S = 1.0
+"""Minimum time between two measurements."""
 
 
 class Room(IntEnum):
-    """What is left, and what follows from it."""
+    """Level of free space; higher is better."""
 
     FULL = 0
-    """Below `min_free_mb`: stop, or go on without pictures."""
+    """Less than `min_free_mb`: the station stops, or continues without storing frames."""
     THIN = 1
-    """Below `thin_free_mb`: pictures of OK parts are left out."""
+    """Less than `thin_free_mb`: frames of OK parts are not stored."""
     LOW = 2
-    """Below `warn_free_mb`: somebody should look."""
+    """Less than `warn_free_mb`: the station warns."""
     ENOUGH = 3
 
 
 class Disk:
-    """Looks once a second at the most."""
+    """The archive's disk; its free space is measured once a second at most."""
 
     def __init__(self, settings: ArchiveSettings) -> None:
         self._folder = settings.folder
         self._limits_mb = (settings.min_free_mb, settings.thin_free_mb, settings.warn_free_mb)
-        self._looked_s = -LOOK_S
+        self._checked_s = -CHECK_INTERVAL_S
         self._room = Room.FULL
 
     def room(self) -> Room:
-        """The level now; FULL if it cannot be told."""
+        """Return the current level, or FULL if the free space cannot be measured."""
         now = time.monotonic()
-        if now - self._looked_s >= LOOK_S:
-            self._looked_s = now
+        if now - self._checked_s >= CHECK_INTERVAL_S:
+            self._checked_s = now
             try:
                 free = shutil.disk_usage(self._folder).free
             except OSError:

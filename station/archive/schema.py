@@ -1,7 +1,8 @@
-"""The index: an SQLite file beside the day folders, readable with any SQLite tool.
+"""The index of the archive: an SQLite file next to the day folders that any SQLite tool can read.
 
-Each record is chained to the one before it: `chain` is the SHA-256 of the chain before and the record's own hash, and the record itself
-holds the chain before. What is taken out or changed afterwards breaks the chain there.
+Each record is chained to the previous one: `chain` is the SHA-256 of the previous chain and the record's own
+hash, and the record itself contains the previous chain. Deleting or modifying a record breaks the chain
+there.
 """
 
 import hashlib
@@ -12,9 +13,11 @@ from station.errors import RecordError
 from station.files.sqlite import CHAIN_START, PATIENCE_S, connect_to_read, use_wal
 
 NAME = "index.sqlite"
+"""File name of the index."""
 VERSION = 2
+"""Version of the index that this software writes."""
 SEARCHABLE_SCORE = 0.05
-"""Segments with a lower score of NOK are not in the table of segments; the record has them all."""
+"""Minimum score of NOK of the segments in the table of segments; the record contains all segments."""
 
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS records (
@@ -60,20 +63,24 @@ ADDED = {
     "chain": "TEXT",
     "frame_state": "TEXT NOT NULL DEFAULT 'kept'",
 }
-"""Columns that archives of version 1 lack; their records have no chain."""
+"""Columns that an index of version 1 does not have; its records have no chain."""
 
 
 def open_index(folder: Path) -> sqlite3.Connection:
-    """The index for writing, made or brought up to date. Raises sqlite3.Error, RecordError if it is of a later version."""
+    """Open the index for writing; create or upgrade it if necessary.
+
+    Raises sqlite3.Error, or RecordError if the index has a later version.
+    """
     connection = sqlite3.connect(folder / NAME, timeout=PATIENCE_S, check_same_thread=False)
     try:
         version = connection.execute("PRAGMA user_version").fetchone()[0]
         if version > VERSION:
             raise RecordError(
-                f"{folder}: index of version {version}, this software writes {VERSION}; update it, or set another archive.folder"
+                f"{folder}: the index has version {version}, this software writes version {VERSION}; "
+                "update weldgate, or set another archive.folder"
             )
         use_wal(connection)
-        with connection:  # readers see all of it or nothing
+        with connection:  # readers see the whole upgrade or nothing of it
             connection.execute("BEGIN IMMEDIATE")
             present = {row[1] for row in connection.execute("PRAGMA table_info(records)")}
             for name, kind in ADDED.items():
@@ -92,10 +99,10 @@ def open_index(folder: Path) -> sqlite3.Connection:
 
 
 def read_index(folder: Path) -> sqlite3.Connection:
-    """The index for reading. Raises RecordError if there is none, or one of another version."""
+    """Open the index for reading. Raises RecordError if there is no index or it has another version."""
     path = folder / NAME
     if not path.is_file():
-        raise RecordError(f"{folder}: no records here ({NAME} is missing); name an archive folder")
+        raise RecordError(f"{folder}: no records found ({NAME} is missing); name an archive folder")
     try:
         connection = connect_to_read(path)
         version = connection.execute("PRAGMA user_version").fetchone()[0]
@@ -104,19 +111,19 @@ def read_index(folder: Path) -> sqlite3.Connection:
     if version != VERSION:
         connection.close()
         raise RecordError(
-            f"{path}: index of version {version}, needed {VERSION}; an engine that opens it brings an older one up to date"
+            f"{path}: the index has version {version}, needed {VERSION}; the engine upgrades an older index"
         )
     connection.row_factory = sqlite3.Row
     return connection
 
 
 def link(before: str, record_sha256: str) -> str:
-    """The chain with one more record."""
+    """Return the chain extended by one record."""
     return hashlib.sha256(f"{before}{record_sha256}".encode()).hexdigest()
 
 
 def last_link(connection: sqlite3.Connection) -> str:
-    """The chain so far."""
+    """Return the chain of all records in the index."""
     for table in ("records", "let_go"):
         row = connection.execute(f"SELECT chain FROM {table} ORDER BY inspection_id DESC LIMIT 1").fetchone()
         if row is not None:

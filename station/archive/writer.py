@@ -1,4 +1,4 @@
-"""Writes records so that none is lost: files, fsync, index row, and only then may the verdict be seen."""
+"""Writes records so that none is lost: the verdict can be shown only after files, fsync and index row."""
 
 import hashlib
 import sqlite3
@@ -19,28 +19,30 @@ from station.records import Part, Provenance, Record, to_json
 from station.settings.model import ArchiveSettings
 
 INCOMING = "incoming.png"
+"""File name of the frame of the part in progress."""
 TRIAL_S = 1.0
+"""Minimum time between two trials to write after a record could not be written."""
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A frame on disk, durable, under a name that only its record makes valid."""
+    """A frame on disk, under a temporary name until its record is written."""
 
     sha256: str
     path: Path | None
-    """None: there was no room."""
+    """None if the disk is full."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pending:
-    """A frame being written while it is judged."""
+    """A frame that is written to disk while it is judged."""
 
     frame: Frame | None
     picture: "Future[Picture] | None"
 
 
 class Archive:
-    """Keeper of one folder of records; one engine at a time."""
+    """An archive that is open for writing; only one process at a time can have it open."""
 
     def __init__(self, settings: ArchiveSettings) -> None:
         """Open or create the archive. Raises RecordError if the folder cannot be used."""
@@ -48,13 +50,13 @@ class Archive:
         self._stops_when_full = settings.when_full == "stop"
         self._disk = Disk(settings)
         self._failed_s: float | None = None
-        """When a record could not be written; None: it goes well."""
+        """Time at which a record could not be written; None if the last one was written."""
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             self._lock = hold(self._folder / "engine.lock")
         except BlockingIOError:
             raise RecordError(
-                f"{self._folder}: another engine keeps its records there; stop it or set archive.folder"
+                f"{self._folder}: another engine writes its records here; stop it, or set archive.folder"
             ) from None
         except OSError as error:
             raise self._unusable(error) from None
@@ -72,12 +74,14 @@ class Archive:
         self._encoder = ThreadPoolExecutor(1, "encode")
 
     def _guard(self) -> None:
-        """An index that is older than the files beside it would give their numbers away again. Raises RecordError."""
+        """Raise RecordError if the index is older than the files: their numbers would be used again."""
         days = sorted(self._folder.glob("????-??-??"))[-3:]
         numbers = [int(path.stem) for day in days for path in day.glob("*.json") if path.stem.isdecimal()]
-        if max(numbers, default=0) > self._next_id():  # the one after the last may be left by a stop
+        if (
+            max(numbers, default=0) > self._next_id()
+        ):  # the next one may be left over from an interrupted part
             raise RecordError(
-                f"{self._folder}: holds record {max(numbers)}, its index ends at {self._next_id() - 1}; "
+                f"{self._folder}: has record {max(numbers)}, but its index ends at {self._next_id() - 1}; "
                 "restore index.sqlite, or set another archive.folder"
             )
 
@@ -87,25 +91,25 @@ class Archive:
 
     def _unusable(self, error: Exception) -> RecordError:
         return RecordError(
-            f"{self._folder}: records cannot be kept there ({error}); set archive.folder to a writable folder"
+            f"{self._folder}: records cannot be written ({error}); set archive.folder to a writable folder"
         )
 
     def close(self) -> None:
-        """Finish and close the index."""
+        """Finish writing and close the archive."""
         self._encoder.shutdown(wait=True)
         self._index.close()
         self._lock.release()
 
     def room(self) -> Room:
-        """Room on the disk."""
+        """Return the level of free space on the disk."""
         return self._disk.room()
 
     def has_room(self) -> bool:
-        """Whether parts may be taken: not while a record could not be written, nor on a full disk."""
+        """Return whether parts can be accepted: records can be written, and the disk is not full."""
         return self._writes() and (self.room() > Room.FULL or not self._stops_when_full)
 
     def _writes(self) -> bool:
-        """After a failed record: whether a trial succeeds, at the most once a second."""
+        """Return whether records can be written; after a failed record, try once a second."""
         if self._failed_s is None:
             return True
         if time.monotonic() - self._failed_s < TRIAL_S:
@@ -122,7 +126,7 @@ class Archive:
         return True
 
     def begin(self, frame: Frame | None) -> Pending:
-        """Start to write the frame while it is being judged; an uncommitted one is gone with the next."""
+        """Start to write a frame while it is being judged; without `commit`, the next frame overwrites it."""
         return Pending(frame, None if frame is None else self._encoder.submit(self._store, frame))
 
     def _store(self, frame: Frame) -> Picture:
@@ -135,11 +139,11 @@ class Archive:
         return Picture(sha256, path)
 
     def commit(
-        self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime
+        self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, *, now: datetime
     ) -> Record:
-        """Make the record durable and return it. Raises RecordError; then nothing is listed."""
+        """Write the record durably and return it. Raises RecordError; then the index has no entry of it."""
         try:
-            return self._commit(pending, inspection, part, provenance, now)
+            return self._commit(pending, inspection, part, provenance, now=now)
         except (OSError, sqlite3.Error, ImageError, ValueError) as error:
             if self._index.in_transaction:
                 self._index.rollback()
@@ -147,7 +151,7 @@ class Archive:
             raise RecordError(f"{self._folder}: the record could not be written: {error}") from None
 
     def mark_shown(self, inspection_id: int, shown: bool) -> None:
-        """Note whether the PLC was shown this verdict; NULL: the station stopped before it could tell. Raises RecordError."""
+        """Note in the index whether the verdict was shown to the PLC. Raises RecordError."""
         try:
             with self._index:
                 self._index.execute(
@@ -159,14 +163,14 @@ class Archive:
             ) from None
 
     def _commit(
-        self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, now: datetime
+        self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, *, now: datetime
     ) -> Record:
         inspection_id = self._next_id()
         day = self._folder / f"{now:%Y-%m-%d}"
         if not day.exists():
             day.mkdir()
             sync_folder(self._folder)
-        for suffix in ("png", "json"):  # of a part that was never listed
+        for suffix in ("png", "json"):  # left over from an interrupted part
             (day / f"{inspection_id:08d}.{suffix}").unlink(missing_ok=True)
         frame_file = sha256 = None
         state = "none" if pending.frame is None else "kept"
@@ -202,11 +206,11 @@ class Archive:
     def _list(self, record: Record, record_file: str, sha256: str, frame_state: str) -> None:
         inspection = record.inspection
         chain = link(self._chain, sha256)
-        worst = max((s.nok for s in inspection.scores), default=None)
+        worst = max((scores.nok for scores in inspection.scores), default=None)
         found = [
-            (record.inspection_id, i, s.nok)
-            for i, s in enumerate(inspection.scores, start=1)
-            if s.nok >= SEARCHABLE_SCORE
+            (record.inspection_id, number, scores.nok)
+            for number, scores in enumerate(inspection.scores, start=1)
+            if scores.nok >= SEARCHABLE_SCORE
         ]
         values = {
             "inspection_id": record.inspection_id,

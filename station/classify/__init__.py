@@ -1,1 +1,1 @@
-"""From strip to scores to verdict."""
+"""From crops to scores, findings and verdict: networks, limits, decision and drift."""

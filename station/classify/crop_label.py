@@ -1,18 +1,19 @@
-"""Which kind of defect a crop shows: the rule for training data, rendered and real."""
+"""Labels a crop with the kind of defect that it shows: the rule for rendered and real training data."""
 
 from collections.abc import Iterable, Sequence
 
 from station.defects import KINDS
 
 OK = "ok"
-"""Name of the crops without a defect."""
+"""Label of a crop without a defect."""
 MIN_OVERLAP = 0.2
-"""A crop shows a defect if this fraction of the shorter of the two is covered; with less it is not used."""
+"""Minimum overlap of crop and defect, as a fraction of the shorter of the two, for the crop to show the
+defect; a crop with less overlap is not used."""
 TOUCH_DEG = 1e-6
-"""Overlap up to which a crop counts as free of a defect: rounding errors."""
+"""Maximum overlap of a crop that counts as free of a defect; allows for rounding errors."""
 
 ORDER = tuple(defect.name for defect in KINDS)
-"""Names of the kinds of defect, the graver later."""
+"""Names of the kinds of defect by increasing severity."""
 
 Span = tuple[str, float, float]
 """Name of the kind of defect, start and end in degrees; the end may exceed 360."""
@@ -25,9 +26,10 @@ def crop_label(
     *,
     order: Sequence[str] = ORDER,
 ) -> str | None:
-    """Return what the crop of an arc shows: the gravest kind of defect, "ok", or None if unused.
+    """Return the label of the crop of an arc: the most severe kind of defect, "ok", or None (not used).
 
-    A crop that a defect only just touches is neither. `order` names the kinds of defect, the graver later.
+    A crop that a defect only just touches is not used. `order` lists the kinds of defect by increasing
+    severity.
     """
     shown: list[str] = []
     is_touched = False
@@ -45,7 +47,7 @@ def crop_label(
 
 
 def _overlap_deg(first: float, length: float, width: float) -> float:
-    """Return how much of the arc from 0 to `width` an arc from `first` on covers, round the ring."""
+    """Return the overlap of the arc from 0 to `width` with an arc of `length` that starts at `first`."""
     if length >= 360:
         return width
     first %= 360

@@ -1,6 +1,7 @@
-"""Networks through onnxruntime; the station's only file that imports it: crops to scores and maps, a band to ring offsets.
+"""Runs the networks: classifier (crops to scores and defect maps) and ring network (band to ring offsets).
 
-The classifier's file carries its contract in its metadata and is refused without it; the ring network's is known by its input.
+This is the station's only file that imports onnxruntime. A classifier file describes itself in its metadata
+and is refused without them; a ring network is recognised by its input.
 """
 
 import hashlib
@@ -23,12 +24,13 @@ from station.vision.polar import COLUMNS, ROWS, SECTORS
 Array = NDArray[np.float64]
 
 OK = "ok"
+"""Name of the class of good crops."""
 CLASSES = (OK, *(kind.name for kind in KINDS))
-"""Classes of a network that is trained today, in the order of its probabilities; a file may know fewer."""
+"""Classes of a newly trained network, in the order of its probabilities; an older file may have fewer."""
 MAPPED = tuple(kind for kind in KINDS if kind.is_mapped)
-"""Kinds of defect of a network that is trained today, in the order of its defect map's channels."""
-LOOK = 192
-"""Length of the vector that tells what a crop looks like."""
+"""Kinds of defect in the order of the channels of a newly trained network's defect map."""
+APPEARANCE_SIZE = 192
+"""Number of appearance features of a crop."""
 METADATA_KEYS = (
     "weldgate.classes",
     "weldgate.thresholds",
@@ -36,45 +38,46 @@ METADATA_KEYS = (
     "weldgate.data_hash",
     "weldgate.version",
 )
+"""Metadata that a classifier file must have."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ModelCard:
-    """What a model file says of itself."""
+    """Description of a classifier, read from the metadata of its file."""
 
     version: str
     data_hash: str
-    """SHA-256 over the training labels and images."""
+    """SHA-256 of the training labels and images."""
     thresholds: Thresholds
-    """Of the kinds of defect that the network knows."""
+    """Thresholds of the kinds of defect that the network knows."""
     novelty_limit: float
-    """Distance of a part to the training images from which it is reported."""
+    """Novelty above which a part is reported."""
     file_hash: str
     """SHA-256 of the file."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Judged:
-    """What the network says of K crops."""
+    """Output of the classifier for K crops."""
 
     scores: tuple[SegmentScores, ...]
     maps: NDArray[np.float32]
-    """Share of each cell that a defect covers, (K, C, 32, 32), one channel for each of the C kinds in `mapped`."""
+    """Covered fraction of each cell (K, C, 32, 32), one channel for each of the C kinds in `mapped`."""
     mapped: tuple[DefectKind, ...]
-    looks: NDArray[np.float32]
-    """What each crop looks like (K, 192), of mean 0 and covariance 1 over the training crops."""
+    appearances: NDArray[np.float32]
+    """Appearance features (K, 192), whitened on the training crops (zero mean, unit covariance)."""
 
     @property
     def novelty(self) -> float:
-        """Root mean squared distance of all looks to those of the training crops; about 1 for these."""
-        return float(np.sqrt((self.looks.astype(np.float64) ** 2).mean()))
+        """Root mean square distance of the appearances from the training crops, for which it is about 1."""
+        return float(np.sqrt((self.appearances.astype(np.float64) ** 2).mean()))
 
 
 class Network:
-    """An ONNX file, loaded."""
+    """A loaded ONNX file."""
 
     def __init__(self, path: Path, threads: int = 2) -> None:
-        """Raises ModelError if the file is missing or damaged."""
+        """Load the file. Raises ModelError if it is missing or damaged."""
         try:
             blob = path.read_bytes()
         except OSError as error:
@@ -95,69 +98,79 @@ class Network:
         self.file_hash = hashlib.sha256(blob).hexdigest()
 
     def run(self, outputs: tuple[str, ...], inputs: dict[str, NDArray[Any]]) -> list[NDArray[np.float32]]:
-        """The named outputs. Raises ModelError."""
+        """Return the named outputs. Raises ModelError."""
         try:
-            return [np.asarray(answer, np.float32) for answer in self.session.run(outputs, inputs)]
+            return [np.asarray(output, np.float32) for output in self.session.run(outputs, inputs)]
         except Exception as error:  # noqa: BLE001 - onnxruntime raises many kinds
             raise ModelError(f"inference failed: {str(error).splitlines()[0][:120]}") from None
 
 
 class Classifier:
-    """A loaded model. `card` says what it is; calling it judges crops."""
+    """A loaded classifier, described by `card`; call it to judge crops."""
 
     def __init__(self, path: Path, threads: int = 2) -> None:
-        """Load and warm up. Raises ModelError if the file is missing, damaged or not one of weldgate's."""
+        """Load and warm up the network. Raises ModelError if the file is not a classifier."""
         self._network = Network(path, threads)
         self.card = _card(path, self._network)
         self(np.zeros((1, SEGMENT_PX, SEGMENT_PX), np.uint8))
 
     def __call__(self, crops: Image) -> Judged:
-        """Judge crops (K, 128, 128) uint8. Raises ModelError if the answer is not K times finite probabilities."""
-        p, maps, looks = self._network.run(("probabilities", "maps", "looks"), {"crops": crops[:, None]})
+        """Return scores, maps and appearances of crops (K, 128, 128) uint8.
+
+        Raises ModelError if the network fails or its output is not finite or not a set of probabilities.
+        """
+        outputs = self._network.run(("probabilities", "maps", "looks"), {"crops": crops[:, None]})
+        probabilities, maps, appearances = outputs
         count, kinds = len(crops), [limit.kind for limit in self.card.thresholds.kinds]
         mapped = tuple(kind for kind in kinds if kind.is_mapped)
-        shapes = ((count, 1 + len(kinds)), (count, len(mapped), CELLS, CELLS), (count, LOOK))
-        if (p.shape, maps.shape, looks.shape) != shapes:
-            raise ModelError(
-                f"inference gave no probabilities, maps and looks (shapes {p.shape}, {maps.shape}, {looks.shape})"
-            )
-        sound = all(((a >= 0) & (a <= 1)).all() for a in (p, maps)) and bool(
-            (np.abs(p.sum(axis=1) - 1) <= 1e-3).all()
+        shapes = ((count, 1 + len(kinds)), (count, len(mapped), CELLS, CELLS), (count, APPEARANCE_SIZE))
+        if tuple(output.shape for output in outputs) != shapes:
+            got = ", ".join(str(output.shape) for output in outputs)
+            raise ModelError(f"inference failed: the output has the shapes {got}, needed {shapes}")
+        sound = all(((output >= 0) & (output <= 1)).all() for output in (probabilities, maps)) and bool(
+            (np.abs(probabilities.sum(axis=1) - 1) <= 1e-3).all()
         )
-        if not (sound and np.isfinite(looks).all()):
-            raise ModelError("inference gave numbers that are no probabilities")
+        if not (sound and np.isfinite(appearances).all()):
+            raise ModelError("inference failed: the output is not a set of probabilities")
         scores = (
-            SegmentScores(float(row[0]), dict(zip(kinds, map(float, row[1:]), strict=True))) for row in p
+            SegmentScores(float(row[0]), dict(zip(kinds, map(float, row[1:]), strict=True)))
+            for row in probabilities
         )
-        return Judged(tuple(scores), maps, mapped, looks)
+        return Judged(tuple(scores), maps, mapped, appearances)
 
 
 class RingNetwork:
-    """The network that sees where the weld runs in a flattened band (`vision.polar`)."""
+    """The network that finds the weld's centre line in an unwrapped band (`station.vision.polar`)."""
 
     def __init__(self, path: Path, threads: int = 2) -> None:
-        """Load and warm up. Raises ModelError if the file is missing, damaged or another network."""
+        """Load and warm up the network. Raises ModelError if the file is not a ring network."""
         self._network = Network(path, threads)
         self.file_hash = self._network.file_hash
         _check_input(path, self._network.session, "bands", [1, ROWS, COLUMNS])
         self(np.zeros((ROWS, COLUMNS), np.uint8))
 
     def __call__(self, band: Image) -> tuple[Array, Array]:
-        """Offset in px (84,), outwards positive, and presence 0..1 (84,) of each sector of a band (192, 672) uint8.
+        """Return offset in px (84,), positive outwards, and presence 0 to 1 (84,) of the sectors of a band.
 
-        The mean over the band's four mirror images, for a mirrored weld is a weld. Raises ModelError.
+        `band` is (192, 672) uint8. The result is the mean over its four mirror images, because a mirrored
+        weld is also a weld. Raises ModelError.
         """
         a, b, c, d = self.sectors(np.stack([band, band[:, ::-1], band[::-1], band[::-1, ::-1]]))
         offset = (a[0] + b[0, ::-1] - c[0] - d[0, ::-1]) / 4
         return offset, (a[1] + b[1, ::-1] + c[1] + d[1, ::-1]) / 4
 
     def sectors(self, bands: Image) -> Array:
-        """What the network itself says of bands (K, 192, 672) uint8: offsets and presences (K, 2, 84)."""
-        (found,) = self._network.run(("sectors",), {"bands": bands[:, None]})
-        answer = np.asarray(found, np.float64)
-        if answer.shape != (len(bands), 2, SECTORS) or not np.isfinite(answer).all():
-            raise ModelError(f"the ring network gave no offsets (shape {answer.shape})")
-        return answer
+        """Return offsets and presences (K, 2, 84) of bands (K, 192, 672) uint8, without mirror images.
+
+        Raises ModelError.
+        """
+        (output,) = self._network.run(("sectors",), {"bands": bands[:, None]})
+        sectors = np.asarray(output, np.float64)
+        if sectors.shape != (len(bands), 2, SECTORS) or not np.isfinite(sectors).all():
+            raise ModelError(
+                f"ring network failed: the output is not a set of offsets (shape {sectors.shape})"
+            )
+        return sectors
 
 
 def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: list[int]) -> None:
@@ -175,13 +188,14 @@ def _card(path: Path, network: Network) -> ModelCard:
     missing = [key for key in METADATA_KEYS if key not in metadata]
     if missing:
         raise ModelError(
-            f"{path}: not a weldgate model, metadata lacks {', '.join(missing)}; make one with weldgate-models train"
+            f"{path}: not a weldgate classifier, {', '.join(missing)} missing in its metadata; "
+            "make one with weldgate-models train"
         )
     _check_input(path, session, "crops", [1, SEGMENT_PX, SEGMENT_PX])
-    lacking = {"probabilities", "maps", "looks"} - {o.name for o in session.get_outputs()}
+    lacking = {"probabilities", "maps", "looks"} - {output.name for output in session.get_outputs()}
     if lacking:
         raise ModelError(
-            f"{path}: has no output {', '.join(sorted(lacking))}; make one with weldgate-models train"
+            f"{path}: output {', '.join(sorted(lacking))} is missing; make a model with weldgate-models train"
         )
     try:
         classes = [str(name) for name in json.loads(metadata["weldgate.classes"])]
@@ -191,10 +205,10 @@ def _card(path: Path, network: Network) -> ModelCard:
         limit = float(json.loads(metadata["weldgate.novelty_limit"]))
     except (ValueError, AttributeError, TypeError):
         raise ModelError(
-            f"{path}: metadata cannot be read; make it again with weldgate-models train"
+            f"{path}: metadata cannot be read; make the model again with weldgate-models train"
         ) from None
     if not 0 < limit < float("inf"):
-        raise ModelError(f"{path}: novelty limit {limit} must be above 0")
+        raise ModelError(f"{path}: novelty limit {limit} must be above 0; make the model again")
     return ModelCard(
         version=metadata["weldgate.version"],
         data_hash=metadata["weldgate.data_hash"],
@@ -205,10 +219,10 @@ def _card(path: Path, network: Network) -> ModelCard:
 
 
 def _thresholds(path: Path, classes: list[str], thresholds: dict[str, float]) -> Thresholds:
-    """Return the thresholds of a file's kinds of defect in the order of its classes."""
+    """Return the thresholds of the kinds of defect in a file, in the order of its classes."""
     if not (len(classes) > 1 and classes[0] == OK and len(set(classes)) == len(classes)):
         raise ModelError(
-            f"{path}: classes are {classes}, needed {OK} and then kinds of defect; make the model again"
+            f"{path}: classes are {classes}, needed {OK} followed by kinds of defect; make the model again"
         )
     try:
         kinds = [kind_named(name) for name in classes[1:]]

@@ -1,4 +1,4 @@
-"""Limits of the decision: from which score on, and from which length on, a kind of defect makes a segment NOK."""
+"""Limits of the decision: score and length from which a defect rejects a segment."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,13 +10,13 @@ from station.settings.model import LimitSettings
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Limits of one kind of defect."""
+    """Threshold and minimum length of one kind of defect."""
 
     kind: DefectKind
     threshold: float
     """Score from which a segment is rejected."""
     min_mm: float = 0.0
-    """Shorter findings are reported but tolerated."""
+    """Minimum length: shorter findings are reported but tolerated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,10 +25,10 @@ class Thresholds:
 
     kinds: tuple[Limit, ...]
     segments: tuple[tuple[int, float], ...] = ()
-    """Number (1 to 21) and threshold, for any kind of defect, of segments with a threshold of their own."""
+    """Segments that have their own threshold: number (1 to 21) and threshold, which applies to all kinds."""
 
     def of_segment(self, index: int) -> "Thresholds":
-        """Return the limits that apply to one segment, 0 to 20."""
+        """Return the limits that apply to the segment with this index, 0 to 20."""
         own = dict(self.segments).get(index + 1)
         return (
             self if own is None else Thresholds(tuple(replace(limit, threshold=own) for limit in self.kinds))
@@ -43,16 +43,16 @@ class Thresholds:
 
     @property
     def lowest(self) -> float:
-        """The lowest threshold of all kinds."""
+        """Lowest threshold of all kinds."""
         return min(limit.threshold for limit in self.kinds)
 
 
 def in_use(
     of_model: Thresholds, limits: Mapping[str, LimitSettings], segments: Mapping[int, float]
 ) -> Thresholds:
-    """Return the limits of a model file with those of the settings laid over them.
+    """Return the limits of a model file, overridden by those of the settings.
 
-    Raises SettingsError if the settings limit a kind of defect that the model does not know.
+    Raises SettingsError if the settings name a kind of defect that the model does not know.
     """
     unknown = sorted(set(limits) - {limit.kind.name for limit in of_model.kinds})
     if unknown:

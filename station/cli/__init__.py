@@ -1,1 +1,1 @@
-"""Commands of the line PC."""
+"""Commands of `weldgate`."""

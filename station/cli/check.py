@@ -1,4 +1,4 @@
-"""What is wrong with this station, and what to do: one line for each thing looked at."""
+"""`weldgate check`: checks the parts of a station one after the other."""
 
 import socket
 from collections.abc import Iterator
@@ -16,16 +16,16 @@ from station.settings.model import Settings
 
 
 def check(path: Path) -> Iterator[tuple[str, str | None]]:
-    """(name, None) for each thing in order, (name, what is wrong) for each that is not."""
+    """Yield (name, None) for each part of the station that works, (name, problem) for each that does not."""
     try:
         settings = load(path)
     except WeldgateError as error:
         yield "settings", str(error)
         return
     yield "settings", None
-    for name, look in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC", _plc)):
+    for name, probe in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC", _plc)):
         try:
-            look(settings)
+            probe(settings)
         except WeldgateError as error:
             yield name, str(error)
         else:
@@ -48,7 +48,8 @@ def _archive(settings: Settings) -> None:
                 settings.archive.warn_free_mb,
             )[room]
             raise WeldgateError(
-                f"{settings.archive.folder}: less than {limit} MB free; make room, or keep less under archive.keep"
+                f"{settings.archive.folder}: less than {limit} MB free; free some space, "
+                "or shorten the retention under archive.keep"
             )
     finally:
         archive.close()
@@ -75,7 +76,8 @@ def _reached(host: str, port: int) -> None:
         socket.create_connection((host, port), timeout=2).close()
     except OSError as error:
         raise WeldgateError(
-            f"PLC {host}:{port} cannot be reached ({error}); check address, cable and firewall, or set plc.host"
+            f"PLC {host}:{port} cannot be reached ({error}); check address, cable and firewall, "
+            "or set another plc.host"
         ) from None
 
 
@@ -86,5 +88,6 @@ def _free(settings: Settings) -> None:
             probe.bind((settings.plc.host, settings.plc.port))
         except OSError as error:
             raise WeldgateError(
-                f"{settings.plc.host}:{settings.plc.port} is not free ({error.strerror}); is the engine running? else set plc.port"
+                f"{settings.plc.host}:{settings.plc.port} is in use ({error.strerror}); stop the engine "
+                "if it is running, or set another plc.port"
             ) from None

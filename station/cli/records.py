@@ -1,6 +1,6 @@
-"""`weldgate records`: finds, verifies, prunes and exports, for people and scripts.
+"""`weldgate records`: searches, verifies, prunes, exports and reports the records of an archive.
 
-What a command needs is imported by it: every command, the window above all, is to start fast.
+Each command imports what it needs, so that all commands, and the window above all, start fast.
 """
 
 import argparse
@@ -15,23 +15,25 @@ from station.analysis.forms import FORMATS
 from station.errors import RecordError
 
 if TYPE_CHECKING:
-    from station.archive.reader import Row, Wanted
+    from station.archive.reader import Query, Row
 
 
 def add_commands(records: argparse.ArgumentParser) -> None:
-    """The commands below `weldgate records`."""
+    """Add the commands of `weldgate records` to its parser."""
     commands = records.add_subparsers(required=True, metavar="COMMAND")
 
     def add(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
-        sub = commands.add_parser(name, help=text, description=text)
+        sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
         sub.set_defaults(command=run)
         sub.add_argument("folder", type=Path, metavar="FOLDER", help="archive folder")
         return sub
 
-    _search_options(add("list", _list, "list records, all or those that are looked for"))
-    add("verify", _verify, "name missing, altered and taken out records")
+    _search_options(add("list", _list, "list all records, or those that match the options"))
+    add("verify", _verify, "report missing, modified or deleted records and journal entries")
     prune = add(
-        "prune", _prune, "let go what the settings do not keep any longer; the engine does so every hour"
+        "prune",
+        _prune,
+        "delete frames and records past their retention; the engine does this every hour",
     )
     prune.add_argument(
         "-c",
@@ -39,48 +41,65 @@ def add_commands(records: argparse.ArgumentParser) -> None:
         type=Path,
         default=Path("station.toml"),
         metavar="FILE",
-        help="default: %(default)s",
+        help="settings file with the retention (default: %(default)s)",
     )
-    prune.add_argument("--dry-run", action="store_true", help="say what would go, change nothing")
-    export = add("export", _export, "write records in another form")
-    export.add_argument("target", type=Path, metavar="TARGET", help="file, or folder for dataset")
-    export.add_argument("--format", choices=FORMATS, default="csv", help="default: %(default)s")
+    prune.add_argument("--dry-run", action="store_true", help="print what would be deleted, delete nothing")
+    export = add("export", _export, "export records as a table, as Q-DAS file or as crops for training")
+    export.add_argument(
+        "target", type=Path, metavar="TARGET", help="file to write, or folder for dataset and reviewed"
+    )
+    export.add_argument(
+        "--format",
+        choices=FORMATS,
+        default="csv",
+        help=(
+            "csv, json, parquet: one row per record; dfq: Q-DAS; dataset: crops by the station's decisions; "
+            "reviewed: crops by the reviews of two people (default: %(default)s)"
+        ),
+    )
     _search_options(export)
-    report = add("report", _report, "write a report: yield, findings by angle, trends, NOK parts, who judged")
-    report.add_argument("target", type=Path, metavar="FILE", help=".html, with everything in it, or .pdf")
-    report.add_argument("--title", default="weldgate: report", help="default: %(default)s")
+    report = add(
+        "report", _report, "write a report with yield, findings by angle, trends, NOK parts and provenance"
+    )
+    report.add_argument(
+        "target", type=Path, metavar="FILE", help="file to write: .html (self-contained) or .pdf"
+    )
+    report.add_argument("--title", default="weldgate: report", help="title (default: %(default)s)")
     report.add_argument(
         "--truth",
         type=Path,
         metavar="FILE",
-        help="what the parts are: CSV with name (serial) and verdict, or JSON",
+        help="compare with the true verdicts: CSV with the columns name (serial) and verdict, or JSON",
     )
     _search_options(report)
-    add("bus", _bus, "print the edges on the PLC bus, and what was against the rules")
+    add("bus", _bus, "print the log of the PLC bus: changed signals and broken rules of the handshake")
 
 
 def _search_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--serial", metavar="TEXT", help="exactly, or its beginning with * behind it")
+    parser.add_argument("--serial", metavar="TEXT", help="exact serial, or a prefix ending in *")
     parser.add_argument(
         "--since",
         type=_time,
         metavar="TIME",
-        help="2026-11-22, or 2026-11-22T14:00; UTC unless it says otherwise",
+        help="this time or later, such as 2026-11-22 or 2026-11-22T14:00; UTC unless it has an offset",
     )
     parser.add_argument("--until", type=_time, metavar="TIME", help="before this time")
-    parser.add_argument("--verdict", choices=("OK", "NOK", "ERROR"))
-    parser.add_argument("--reason", metavar="NAME", help="as the list prints it")
+    parser.add_argument("--verdict", choices=("OK", "NOK", "ERROR"), help="this verdict only")
+    parser.add_argument("--reason", metavar="NAME", help="reason as the list prints it")
     parser.add_argument(
         "--segment",
         type=int,
         choices=range(1, 22),
         metavar="N",
-        help="1 to 21, with a score of at least --score",
+        help="segment, 1 to 21, whose score is at least --score",
     )
     parser.add_argument(
-        "--score", type=float, metavar="P", help="score of NOK of the segment, or of the worst; from 0.05"
+        "--score",
+        type=float,
+        metavar="P",
+        help="minimum score of NOK, 0.05 or higher, of --segment or else of the worst segment",
     )
-    parser.add_argument("--last", type=int, metavar="N", help="the newest only")
+    parser.add_argument("--last", type=int, metavar="N", help="the newest N records only")
 
 
 def _time(text: str) -> datetime:
@@ -88,48 +107,49 @@ def _time(text: str) -> datetime:
         when = datetime.fromisoformat(text)
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"{text!r} is no time; write 2026-11-22 or 2026-11-22T14:00"
+            f"{text!r} is not a valid time; use YYYY-MM-DD or YYYY-MM-DDTHH:MM"
         ) from None
     return when.replace(tzinfo=UTC) if when.tzinfo is None else when.astimezone(UTC)
 
 
-def _wanted(a: argparse.Namespace) -> "Wanted":
-    from station.archive.reader import Wanted
+def _query(arguments: argparse.Namespace) -> "Query":
+    from station.archive.reader import Query
 
-    score = 0.05 if a.segment is not None and a.score is None else a.score
-    return Wanted(
-        serial=a.serial,
-        since=a.since,
-        until=a.until,
-        verdict=a.verdict,
-        reason=a.reason,
-        segment=a.segment,
-        min_score=score,
-        newest_first=a.last is not None,
-        limit=a.last,
+    any_score = arguments.segment is not None and arguments.score is None
+    return Query(
+        serial=arguments.serial,
+        since=arguments.since,
+        until=arguments.until,
+        verdict=arguments.verdict,
+        reason=arguments.reason,
+        segment=arguments.segment,
+        min_score=0.05 if any_score else arguments.score,
+        newest_first=arguments.last is not None,
+        limit=arguments.last,
     )
 
 
 def _list(arguments: argparse.Namespace) -> int:
     from station.archive.reader import find
 
-    rows = find(arguments.folder, _wanted(arguments))
+    rows = find(arguments.folder, _query(arguments))
     for row in rows:
         print(_line(row))
     return 0
 
 
 def _line(row: "Row") -> str:
-    late = {True: "", False: "not shown to the PLC", None: "unknown whether the PLC saw it"}[row.shown_to_plc]
+    shown = {True: "", False: "not shown to the PLC", None: "unknown whether shown to the PLC"}
     notes = [
         row.reason or "",
         "" if row.purpose == "part" else row.purpose,
-        late if row.purpose != "test" else "",
+        shown[row.shown_to_plc] if row.purpose != "test" else "",
+        "" if row.frame_state in ("kept", "none") else f"frame {row.frame_state}",
     ]
-    notes.append("" if row.frame_state in ("kept", "none") else f"picture {row.frame_state}")
+    time = row.grabbed_at[:19].replace("T", " ")
     worst = "     " if row.worst_score is None else f"{row.worst_score:5.3f}"
-    said = ", ".join(note for note in notes if note)
-    return f"{row.inspection_id:8d}  {row.grabbed_at[:19].replace('T', ' ')}  {row.verdict:5}  {worst}  {row.serial:20}  {said}".rstrip()
+    text = ", ".join(note for note in notes if note)
+    return f"{row.inspection_id:8d}  {time}  {row.verdict:5}  {worst}  {row.serial:20}  {text}".rstrip()
 
 
 def _verify(arguments: argparse.Namespace) -> int:
@@ -140,9 +160,8 @@ def _verify(arguments: argparse.Namespace) -> int:
     for name, problem in chain(verify(arguments.folder), verify_journal(arguments.folder)):
         bad += 1
         print(f"weldgate: {arguments.folder}: {name}: {problem}", file=sys.stderr)
-    print(
-        f"{len(find(arguments.folder))} records, {len(entries(arguments.folder))} entries of the journal, {bad} problems"
-    )
+    records, journal = len(find(arguments.folder)), len(entries(arguments.folder))
+    print(f"{records} records, {journal} journal entries, {bad} problems")
     return 1 if bad else 0
 
 
@@ -151,9 +170,9 @@ def _prune(arguments: argparse.Namespace) -> int:
     from station.settings.file import load
 
     keep = load(arguments.settings).archive.keep
-    done = prune(arguments.folder, keep, datetime.now(UTC), arguments.dry_run)
-    verb = "would go" if arguments.dry_run else "let go"
-    print(f"{verb}: {done.frames} pictures, {done.records} records, {done.bytes / 1e6:.1f} MB")
+    done = prune(arguments.folder, keep, datetime.now(UTC), dry=arguments.dry_run)
+    verb = "would delete" if arguments.dry_run else "deleted"
+    print(f"{verb} {done.frames} frames, {done.records} records, {done.bytes / 1e6:.1f} MB")
     return 0
 
 
@@ -162,10 +181,10 @@ def _export(arguments: argparse.Namespace) -> int:
     from station.archive.reader import read_records
 
     if not arguments.target.resolve().parent.is_dir():
-        raise RecordError(f"{arguments.target}: its folder does not exist")
+        raise RecordError(f"{arguments.target}: the folder does not exist; name a file in an existing folder")
     bad = 0
     for path, problem in export(
-        read_records(arguments.folder, _wanted(arguments)),
+        read_records(arguments.folder, _query(arguments)),
         arguments.folder,
         arguments.target,
         arguments.format,
@@ -183,8 +202,9 @@ def _report(arguments: argparse.Namespace) -> int:
     from station.archive.reader import read_records
 
     if not arguments.target.resolve().parent.is_dir() or arguments.target.is_dir():
-        raise RecordError(f"{arguments.target}: cannot be written there; name a file in an existing folder")
-    entries = sorted(read_records(arguments.folder, _wanted(arguments)), key=lambda e: e.row.inspection_id)
+        raise RecordError(f"{arguments.target}: cannot be written; name a file in an existing folder")
+    found = read_records(arguments.folder, _query(arguments))
+    entries = sorted(found, key=lambda entry: entry.row.inspection_id)
     truth = None if arguments.truth is None else read_truth(arguments.truth)
     page = report(entries, arguments.folder, arguments.title, truth)
     if arguments.target.suffix.lower() == ".pdf":

@@ -1,4 +1,4 @@
-"""The command `weldgate replay`: judges recorded images again, prints a summary, writes files on request."""
+"""`weldgate replay`: judges recorded images again, prints a summary and writes files on request."""
 
 import argparse
 import os
@@ -28,7 +28,7 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     The code is 0, or 1 if an image could not be inspected or a record is judged differently by the networks
     and limits that made it.
     """
-    found = sources(arguments.paths)
+    images = sources(arguments.paths)
     settings = _settings(arguments, shipped)
     um_per_px = settings.weld.um_per_px if arguments.um_per_px is None else arguments.um_per_px
     if not 1 <= um_per_px <= 200:
@@ -43,16 +43,16 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     part = None if arguments.json is None else arguments.json.with_name(arguments.json.name + ".part")
     judge = load_inspector(settings)
     factor = um_per_px / settings.weld.um_per_px
-    judged = replay(found, settings, judge=judge, factor=factor, processes=processes, part=part)
+    judged = replay(images, settings, judge=judge, factor=factor, processes=processes, part=part)
     silent = not sys.stderr.isatty()
-    as_they_came, problems, bad = dict[str, Replayed](), list[str](), 0
-    for replayed in track(judged, description="replay", total=len(found), disable=silent, transient=True):
-        as_they_came[replayed.name] = replayed
+    unordered, problems, bad = dict[str, Replayed](), list[str](), 0
+    for replayed in track(judged, description="replay", total=len(images), disable=silent, transient=True):
+        unordered[replayed.name] = replayed
         bad += replayed.problem is not None
         for line in (*([replayed.problem] if replayed.problem else []), *replayed.warnings):
             problems.append(line)
             print(f"weldgate: {line}", file=sys.stderr)
-    results = {source.name: as_they_came[source.name] for source in found}
+    results = {source.name: unordered[source.name] for source in images}
     if arguments.json is not None:
         write_json(arguments.json, results.values())
     if part is not None:
@@ -60,13 +60,15 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     if arguments.csv is not None:
         write_csv(arguments.csv, results.values())
     verdicts = Counter(replayed.verdict for replayed in results.values())
-    print(f"{len(found)} images: {', '.join(f'{verdicts[verdict]} {verdict}' for verdict in Verdict)}")
-    recorded = any(source.row is not None for source in found)
-    comparison = compare(found, results, judge[1]) if recorded else None
+    print(f"{len(images)} images: {', '.join(f'{verdicts[verdict]} {verdict}' for verdict in Verdict)}")
+    recorded = any(source.row is not None for source in images)
+    comparison = compare(images, results, judge[1]) if recorded else None
     if comparison is not None:
         print("\n".join(comparison.lines()))
         for name in comparison.not_alike:
-            line = f"{name}: differs from its record, although networks and limits are the same"
+            line = (
+                f"{name}: not reproducible: same networks and limits give a different result than on the line"
+            )
             print(f"weldgate: {line}", file=sys.stderr)
         for problem in comparison.problems:
             print(f"weldgate: {problem}", file=sys.stderr)
@@ -75,7 +77,7 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     if arguments.report is not None:
         page = write_page(
             arguments.report,
-            sources=found,
+            sources=images,
             results=results,
             judge=judge[1],
             comparison=comparison,

@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from station.archive.reader import Wanted, find
+from station.archive.reader import Query, find
 from station.channel.requests import (
     FAULT,
     TOO_OLD,
@@ -178,7 +178,7 @@ class OperatorDesk:
         append(self._folder, Kind.ALARM_SEEN, user.name, str(request.number))
 
     def _review(self, request: GiveReview, user: User) -> None:
-        rows = find(self._folder, Wanted(number=request.inspection_id))
+        rows = find(self._folder, Query(number=request.inspection_id))
         if not rows:
             raise RecordError(f"there is no part {request.inspection_id}")
         try:

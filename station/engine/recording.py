@@ -22,7 +22,7 @@ def keep(
 ) -> Record:
     """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
     try:
-        return archive.commit(pending, inspection, part, provenance, datetime.now(UTC))
+        return archive.commit(pending, inspection, part, provenance, now=datetime.now(UTC))
     except RecordError as error:
         log.error("%s", error)
     except Exception:  # the gate must answer, and without a record never with a verdict

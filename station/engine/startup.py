@@ -11,7 +11,7 @@ from types import FrameType
 from typing import TypeVar
 
 from station.archive.prune import Housekeeping
-from station.archive.reader import Wanted, find
+from station.archive.reader import Query, find
 from station.archive.writer import Archive
 from station.camera.choose import make_camera
 from station.camera.reconnecting import ReconnectingCamera
@@ -73,7 +73,7 @@ def make_cycle(
 
 def _master(folder: Path, serial: str, expected: Verdict) -> Master:
     """With its last check before this start."""
-    checks = find(folder, Wanted(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=1))
+    checks = find(folder, Query(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=1))
     if not checks:
         return Master(expected)
     return Master(

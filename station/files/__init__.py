@@ -1,1 +1,1 @@
-"""Files on disk: whole or absent, images, SQLite, what other rooms build on."""
+"""Files on disk: atomic writes, images, SQLite databases, locks and the installation's folders."""

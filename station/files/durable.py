@@ -1,4 +1,4 @@
-"""Files that are whole or not there."""
+"""Writes files atomically: a file has its whole content, or it does not exist."""
 
 import os
 from collections.abc import Iterator
@@ -6,14 +6,14 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 PART = ".new.part"
-"""Suffix of a file while it is written."""
+"""Suffix of a file while it is being written."""
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a free name next to `path`; the file written under it takes the place of `path` at the end.
+    """Yield a temporary path next to `path`; the file written there replaces `path` at the end.
 
-    After an error nothing is left of it, and `path` stays as it was. Raises OSError.
+    After an error the temporary file is deleted, and `path` is unchanged. Raises OSError.
     """
     part = path.with_name(path.name + PART)
     part.unlink(missing_ok=True)
@@ -27,9 +27,9 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def write_whole(path: Path, data: bytes, *, durable: bool = False) -> None:
-    """Write a file so that never half of it is seen under its name. Raises OSError.
+    """Write a file atomically. Raises OSError.
 
-    With `durable` the content is on disk when this returns; `sync_folder` does the same for the name.
+    With `durable`, the content is on disk when this returns; `sync_folder` does the same for the name.
     """
     with replacing(path) as part, part.open("wb") as file:
         file.write(data)
@@ -39,7 +39,10 @@ def write_whole(path: Path, data: bytes, *, durable: bool = False) -> None:
 
 
 def stage(path: Path, data: bytes) -> Path:
-    """Write durably under a temporary name, ready to be renamed to `path`; return it. Raises OSError."""
+    """Write a file durably under a temporary name and return its path, ready to be renamed to `path`.
+
+    Raises OSError.
+    """
     part = path.with_name(path.name + PART)
     with part.open("wb") as file:
         file.write(data)
@@ -49,7 +52,7 @@ def stage(path: Path, data: bytes) -> Path:
 
 
 def sync_folder(folder: Path) -> None:
-    """Make the names in a folder durable. Raises OSError."""
+    """Write the file names of a folder to disk, so that they survive a power failure. Raises OSError."""
     if os.name != "posix":
         return
     handle = os.open(folder, os.O_RDONLY)

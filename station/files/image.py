@@ -1,4 +1,4 @@
-"""Image files to grey pictures and back, lossless."""
+"""Reads image files as grey images, and encodes frames without loss."""
 
 from pathlib import Path
 from typing import Any
@@ -11,31 +11,36 @@ from station.domain import Image
 from station.errors import ImageError
 
 SUFFIXES = frozenset((".png", ".bmp", ".tif", ".tiff", ".jpg", ".jpeg"))
+"""Suffixes of image files that can be read, in lower case."""
 MAX_BYTES = 512 * 1024 * 1024
+"""Maximum size of an image file."""
 MAX_SIDE_PX = 32_000
+"""Maximum width and height of an image."""
 PNG = (
     *(cv2.IMWRITE_PNG_COMPRESSION, 1),
     *(cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_AVG),
     *(cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE),
 )
+"""Options of the PNG encoder, chosen by measurement (`deploy.bench.records`)."""
 
 
 def read_image(path: Path) -> Image:
-    """Picture (H, W) uint8. 16-bit pictures keep their upper 8 bits, colour becomes grey.
+    """Return the image in a file as grey values (height, width) uint8.
 
-    Raises ImageError naming the file and what is wrong with it.
+    Of 16-bit values the upper 8 bits are used; colour is converted to grey. Raises ImageError with the file
+    and what is wrong with it.
     """
     return read_marked(path)[0]
 
 
 def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
-    """The same, and what was lost before: compression, colour, depth. Raises ImageError."""
+    """Return an image like `read_image`, and a warning for each kind of loss. Raises ImageError."""
     warnings = []
     if path.suffix.lower() in (".jpg", ".jpeg"):
-        warnings.append("JPEG: its compression changes scores; record lossless")
+        warnings.append("JPEG: the compression changes scores; record images without loss")
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise ImageError(f"{path}: larger than 512 MiB; not a frame")
+            raise ImageError(f"{path}: larger than 512 MiB, so it is not a frame")
         raw = np.frombuffer(path.read_bytes(), np.uint8)
     except OSError as error:
         raise ImageError(f"{path}: cannot be read ({error.strerror})") from None
@@ -46,13 +51,14 @@ def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
         except cv2.error:
             image = None
     if image is None:
-        raise ImageError(f"{path}: not a readable image; PNG, BMP, TIFF or JPEG is needed")
+        raise ImageError(f"{path}: not a readable image; use PNG, BMP, TIFF or JPEG")
     if image.dtype not in (np.uint8, np.uint16):
-        raise ImageError(f"{path}: pixels are {image.dtype}; 8 or 16 bit is needed")
+        raise ImageError(f"{path}: pixels are {image.dtype}; use 8 or 16 bits per pixel")
     if max(image.shape[:2]) > MAX_SIDE_PX:
-        raise ImageError(f"{path}: {image.shape[1]} x {image.shape[0]} px; at most {MAX_SIDE_PX} px a side")
+        size = f"{image.shape[1]} x {image.shape[0]} px"
+        raise ImageError(f"{path}: {size} is too large; the maximum is {MAX_SIDE_PX} px per side")
     if image.ndim == 3 and image.shape[2] >= 3 and not _grey(image):
-        warnings.append("colour: only its brightness is judged")
+        warnings.append("colour: only the brightness is judged")
     if image.ndim == 3:
         image = (
             image[:, :, 0]
@@ -69,7 +75,7 @@ def _grey(image: NDArray[Any]) -> bool:
 
 
 def encode_png(image: Image) -> bytes:
-    """Lossless PNG. Filter and strategy by measurement (`deploy.bench.records`): a camera's noise has no repeats to look for."""
+    """Return an image as PNG, without loss. Raises ImageError."""
     try:
         done, buffer = cv2.imencode(".png", image, PNG)
     except cv2.error as error:

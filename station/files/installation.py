@@ -1,6 +1,7 @@
-"""Where this installation lies, and how to start one of its rooms in a process of its own, in any folder and with any path.
+"""Folder of this installation, and the command line that runs one of its rooms in a separate process.
 
-Run as a file it is that process: `python -P station/files/installation.py ROOM ARGUMENT...`
+The command works in any folder and with any Python path: it runs this file, which starts the room:
+`python -P station/files/installation.py ROOM ARGUMENT...`
 """
 
 import runpy
@@ -8,13 +9,13 @@ import sys
 from pathlib import Path
 
 ROOMS_FOLDER = Path(__file__).resolve().parents[2]
-"""Folder of station, synth, models and deploy: the checkout, or the installed package."""
+"""Folder that contains station, synth, models and deploy: the checkout, or the installed package."""
 SHIPPED_NETWORKS = ROOMS_FOLDER / "models" / "shipped"
-"""Folder of the networks that come with weldgate."""
+"""Folder of the networks that are shipped with weldgate."""
 
 
 def room_command(room: str) -> list[str]:
-    """Return the beginning of a command line that runs a room such as "station"; its arguments follow."""
+    """Return the command line that runs a room such as "station"; append the arguments of the room."""
     return [sys.executable, "-P", str(Path(__file__).resolve()), room]
 
 

@@ -1,4 +1,4 @@
-"""Locks between processes, through filelock; the only file that imports it."""
+"""Locks between processes; the only file that imports filelock."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,15 +8,15 @@ if TYPE_CHECKING:
 
 
 def hold(path: Path) -> "BaseFileLock":
-    """Take the lock of this file until `release()`; the system frees it if this process dies.
+    """Take the lock of this file until `release()`; the operating system frees it if this process dies.
 
-    Raises BlockingIOError at once if the lock is held already, OSError if there can be no such file or lock.
+    Does not wait. Raises BlockingIOError if the lock is already held, OSError if the file cannot be locked.
     """
-    from filelock import FileLock, Timeout  # the window starts without it
+    from filelock import FileLock, Timeout  # imported here so that the window starts faster
 
-    # A file that only marks the lock by being there would outlive a killed holder: no fallback to it.
+    # No soft lock: a file that marks the lock by its existence would outlive a killed holder.
     lock = FileLock(path, blocking=False, thread_local=False, fallback_to_soft=False)
-    path.parent.stat()  # an absent folder is an error; filelock would create it
+    path.parent.stat()  # a missing folder is an error; filelock would create it
     try:
         lock.acquire()
     except Timeout:

@@ -1,4 +1,4 @@
-"""SQLite files that several processes write and read at once; index of the archive and journal are such files."""
+"""Opens SQLite databases that several processes use at once: the index of the archive, and the journal."""
 
 import os
 import sqlite3
@@ -6,15 +6,16 @@ import time
 from pathlib import Path
 
 PATIENCE_S = 2.0
-"""Time for which another process that uses the same file is waited for."""
+"""Time to wait for another process that uses the same file."""
 CHAIN_START = "0" * 64
-"""Hash before the first entry, where each entry is chained to the one before."""
+"""Start of a hash chain: the hash that precedes the first entry."""
 
 
 def use_wal(connection: sqlite3.Connection) -> None:
-    """Put a database into WAL mode, each commit durable. Raises sqlite3.Error.
+    """Put a database into WAL mode with durable commits. Raises sqlite3.Error.
 
-    Only the first time changes the file. SQLite does not wait for others then, whatever the connection's timeout, so it is done here.
+    Only the first call changes the file. For that change SQLite ignores the timeout of the connection, so
+    this function waits for other processes.
     """
     until_s = time.monotonic() + PATIENCE_S
     while True:
@@ -29,13 +30,13 @@ def use_wal(connection: sqlite3.Connection) -> None:
 
 
 def connect_to_read(path: Path) -> sqlite3.Connection:
-    """Open a database in WAL mode, also where nobody may write the log next to it. Raises sqlite3.Error.
+    """Open a database in WAL mode for reading, even if its folder is read-only. Raises sqlite3.Error.
 
-    One that another process makes at this moment has no tables yet: they are waited for.
+    Waits for the tables of a database that another process is just creating.
     """
     writable = os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists()
-    how = "mode=ro" if writable else "mode=ro&immutable=1"
-    connection = sqlite3.connect(f"{path.resolve().as_uri()}?{how}", uri=True, timeout=PATIENCE_S)
+    mode = "mode=ro" if writable else "mode=ro&immutable=1"
+    connection = sqlite3.connect(f"{path.resolve().as_uri()}?{mode}", uri=True, timeout=PATIENCE_S)
     until_s = time.monotonic() + PATIENCE_S
     try:
         while (

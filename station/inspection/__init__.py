@@ -1,1 +1,1 @@
-"""Frame to verdict: one inspector for line, replay and self-test."""
+"""From frame to verdict: one inspector for line, replay and self-test."""

@@ -1,12 +1,13 @@
-"""Frame to verdict: locate, unwrap, quality gate, classify, decide. No device, no file."""
+"""Judges a frame: locate, unwrap, check quality, classify, decide. Uses no device and no file."""
 
 from time import perf_counter
 
 import numpy as np
+from numpy.typing import NDArray
 
 from station.classify.decision import findings, mean_of, near_threshold, rejected_kinds
 from station.classify.drift import read_reference
-from station.classify.onnx import LOOK, Classifier, RingNetwork
+from station.classify.onnx import APPEARANCE_SIZE, Classifier, RingNetwork
 from station.classify.thresholds import in_use
 from station.defects import Reason
 from station.domain import Image, Inspection, Ring, SegmentScores, Timing, Verdict
@@ -16,22 +17,27 @@ from station.vision.locate import Expected, locate
 from station.vision.quality import gate, measure
 from station.vision.unwrap import segments, unwrap
 
-LOOK_DECIMALS = 3
-"""Of a part's look; its components are about 1."""
+APPEARANCE_DECIMALS = 3
+"""Decimals to which a part's appearance features, which are about 1, are rounded."""
 
 
 class Inspector:
-    """Judges frames with one model and one set of limits; the same for line and replay."""
+    """Judges frames with one pair of networks and one set of limits."""
 
     def __init__(
         self,
         ring_network: RingNetwork,
         classifier: Classifier,
+        *,
         weld: WeldSettings,
         quality: QualitySettings,
         model: ModelSettings,
     ) -> None:
-        """Raises ModelError if the settings name a reference that does not fit, SettingsError if a limit is of no kind the model knows."""
+        """Set up the limits and read the reference.
+
+        Raises ModelError if the reference does not match the classifier, SettingsError if the settings limit
+        a kind of defect that the classifier does not know.
+        """
         self._ring_network = ring_network
         self.classifier = classifier
         self._weld = weld
@@ -40,19 +46,19 @@ class Inspector:
         self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
         self.card = card = classifier.card
         path = model.reference_path
-        self.reference = None if path is None else read_reference(path, card.file_hash, LOOK)
+        self.reference = None if path is None else read_reference(path, card.file_hash, APPEARANCE_SIZE)
         self.thresholds = in_use(card.thresholds, model.limits, model.segment_thresholds)
 
     def locate(self, image: Image) -> Ring:
-        """Ring of the weld in `image` (H, W) uint8. Raises LocateError, ModelError."""
+        """Return the ring of the weld in `image` (height, width) uint8. Raises LocateError, ModelError."""
         return locate(image, self._expected, self._ring_network)
 
     def is_novel(self, judged: Inspection) -> bool:
-        """Whether a part looks unlike all training images, so that its verdict deserves less trust."""
+        """Return whether a part differs from all training images, so that its verdict is less reliable."""
         return judged.novelty is not None and judged.novelty > self.card.novelty_limit
 
     def inspect(self, image: Image, grab_ms: float | None = None) -> Inspection:
-        """Judge `image` (H, W) uint8. Every way that does not end with 21 judged segments ends in ERROR."""
+        """Return the inspection of `image` (height, width) uint8; ERROR unless 21 segments were judged."""
         start = perf_counter()
         try:
             ring = self.locate(image)
@@ -71,13 +77,15 @@ class Inspector:
         try:
             crops = segments(strip)
             judged = self.classifier(crops)
-            scores = self._look_twice(crops, judged.scores)
+            scores = self._average_mirrored(crops, judged.scores)
         except ModelError:
             return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
-        found = findings(scores, judged.maps, judged.mapped, self.thresholds, ring, self._weld.um_per_px)
+        um_per_px = self._weld.um_per_px
+        found = findings(scores, judged.maps, judged.mapped, self.thresholds, ring=ring, um_per_px=um_per_px)
         rejected = rejected_kinds(scores, found, self.thresholds)
         reasons = sorted({kind for kind in rejected if kind is not None}, key=lambda kind: kind.code)
-        worst = max((f for f in found if f.kind in reasons), key=lambda f: f.score, default=None)
+        rejecting = (finding for finding in found if finding.kind in reasons)
+        worst = max(rejecting, key=lambda finding: finding.score, default=None)
         return Inspection(
             verdict=Verdict.NOK if reasons else Verdict.OK,
             reason=next(iter(reasons), None) if worst is None else worst.kind,
@@ -88,19 +96,26 @@ class Inspector:
             rejected=rejected,
             timing=Timing(grab_ms, locate_ms, unwrap_ms, _ms(start)),
             novelty=judged.novelty,
-            look=tuple(np.round(judged.looks.mean(axis=0, dtype=np.float64), LOOK_DECIMALS).tolist()),
+            look=_mean_appearance(judged.appearances),
         )
 
-    def _look_twice(self, crops: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:
-        """Segments near their threshold are seen again in the mirror: a mirrored weld is a weld, with the same defects."""
-        near = [i for i, s in enumerate(scores) if near_threshold(s, self.thresholds.of_segment(i))]
+    def _average_mirrored(self, crops: Image, scores: tuple[SegmentScores, ...]) -> tuple[SegmentScores, ...]:
+        """Return the scores; those near a threshold are averaged over the mirror images of their crop.
+
+        A mirrored weld is also a weld, with the same defects.
+        """
+        near = [i for i, own in enumerate(scores) if near_threshold(own, self.thresholds.of_segment(i))]
         if not near:
             return scores
-        again = crops[near]
-        views = np.concatenate([again[:, :, ::-1], again[:, ::-1], again[:, ::-1, ::-1]])
+        chosen = crops[near]
+        views = np.concatenate([chosen[:, :, ::-1], chosen[:, ::-1], chosen[:, ::-1, ::-1]])
         mirrored = self.classifier(views).scores
         seen = {segment: (scores[segment], *mirrored[i :: len(near)]) for i, segment in enumerate(near)}
-        return tuple(mean_of(seen[i]) if i in seen else s for i, s in enumerate(scores))
+        return tuple(mean_of(seen[i]) if i in seen else own for i, own in enumerate(scores))
+
+
+def _mean_appearance(appearances: NDArray[np.float32]) -> tuple[float, ...]:
+    return tuple(np.round(appearances.mean(axis=0, dtype=np.float64), APPEARANCE_DECIMALS).tolist())
 
 
 def _ms(start: float) -> float:

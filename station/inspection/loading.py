@@ -1,4 +1,4 @@
-"""A recipe made ready: networks loaded and warm, limits set, tested on a stored frame."""
+"""Prepares a recipe for inspection: loads its networks, sets its limits and runs its self-test."""
 
 import hashlib
 import zlib
@@ -15,7 +15,7 @@ from station.settings.model import Settings, for_recipe
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """A recipe, ready to judge."""
+    """A recipe that is ready to judge frames."""
 
     number: int
     inspector: Inspector
@@ -24,7 +24,7 @@ class Loaded:
 
 
 def prepare(settings: Settings, number: int) -> Loaded:
-    """Load a recipe, warm it up, test it on its stored frame. Raises WeldgateError."""
+    """Load a recipe, warm up its networks and run its self-test. Raises WeldgateError."""
     chosen = for_recipe(settings, number)
     inspector, provenance = load_inspector(chosen)
     provenance = replace(provenance, recipe=number)
@@ -38,10 +38,12 @@ def prepare(settings: Settings, number: int) -> Loaded:
 
 
 def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
-    """Inspector and what its verdicts come from. Raises ModelError."""
+    """Return the inspector of these settings and the provenance of its verdicts. Raises ModelError."""
     ring_network = RingNetwork(settings.model.ring_path, settings.model.threads)
     classifier = Classifier(settings.model.path, settings.model.threads)
-    inspector = Inspector(ring_network, classifier, settings.weld, settings.quality, settings.model)
+    inspector = Inspector(
+        ring_network, classifier, weld=settings.weld, quality=settings.quality, model=settings.model
+    )
     parts = (
         settings.model_dump_json(include={"camera", "weld", "quality"}),
         ring_network.file_hash,
@@ -63,6 +65,6 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
 
 
 def _words_of(thresholds: Thresholds) -> list[str]:
-    """Write out all limits: whatever changes them changes CONFIG_CRC."""
+    """Return all limits as text, so that a change of any limit changes CONFIG_CRC."""
     words = [f"{limit.kind.name} {limit.threshold!r} {limit.min_mm!r}" for limit in thresholds.kinds]
     return words + [f"{number} {own!r}" for number, own in thresholds.segments]

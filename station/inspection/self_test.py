@@ -1,4 +1,4 @@
-"""A stored frame judged again and again: the proof that the inspection still works, made while no part is there."""
+"""Self-test: judges a stored frame while no part is present, to prove that the inspection works."""
 
 from pathlib import Path
 
@@ -9,10 +9,10 @@ from station.inspection.inspector import Inspector
 
 
 class SelfTest:
-    """The frame, and what was found in it when the station started."""
+    """A stored frame with its inspection at the start, which must not change."""
 
     def __init__(self, inspector: Inspector, path: Path, verdict: str) -> None:
-        """Raises ImageError; ModelError if the frame is not judged as it must be."""
+        """Read and judge the frame. Raises ImageError, ModelError if it does not get this verdict."""
         self._inspector, self._image = inspector, read_image(path)
         self._expected = inspector.inspect(self._image)
         if self._expected.verdict != verdict:
@@ -22,11 +22,11 @@ class SelfTest:
                 else str(self._expected.verdict)
             )
             raise ModelError(
-                f"{path}: the self-test frame is judged {found}, must be {verdict}; check networks, limits and this PC"
+                f"{path}: the self-test gives {found}, not {verdict}; check networks, limits and this PC"
             )
 
     def passes(self) -> bool:
-        """Whether the same is found again, to the bit."""
+        """Judge the frame again and return whether the result is the same, bit for bit."""
         return _found(self._inspector.inspect(self._image)) == _found(self._expected)
 
 

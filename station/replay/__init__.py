@@ -1,1 +1,1 @@
-"""Judges recorded images again with the line's own code: on all cores, resumable, compared with records."""
+"""Judges recorded images again with the code of the line, and compares them with their records."""

@@ -1,4 +1,4 @@
-"""Compares the results of a replay with the records of the line: which verdicts flip, in which direction."""
+"""Compares the results of a replay with the records of the line."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,52 +11,55 @@ from station.replay.files import Source
 from station.replay.replayed import Replayed
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Flip:
-    """A part whose verdict now differs from that of the line."""
+    """A part whose verdict differs from that of the line."""
 
     name: str
     before: Verdict
     now: Verdict
     worst_before: float | None
+    """Highest score of NOK on the line."""
     worst_now: float | None
+    """Highest score of NOK in the replay."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
-    """The verdicts of the line and of the replay, held against each other."""
+    """Comparison of the verdicts of the line with those of the replay."""
 
     compared: int
+    """Number of records that were compared."""
     same_judge: int
-    """Number of records made with the same networks, limits and settings; these must agree to the bit."""
+    """Number of records made with the same networks, limits and settings; these must agree bit for bit."""
     not_alike: tuple[str, ...]
-    """Names of those among them that do not."""
+    """Names of the records among these that do not agree."""
     flips: tuple[Flip, ...]
     problems: tuple[str, ...]
-    """Records that are not compared because they cannot be read or their frame was changed, a line each."""
+    """One line for each record that was not compared, because it cannot be read or its frame was modified."""
 
     def lines(self) -> list[str]:
-        """Return the comparison in words, for the terminal."""
-        answer = [f"compared with the line: {self.compared} parts, {len(self.flips)} verdicts flip"]
+        """Return the comparison as lines for the terminal."""
+        lines = [f"compared with the line: {self.compared} parts, {len(self.flips)} verdicts flip"]
         for before, now in (("NOK", "OK"), ("OK", "NOK")):
             flipped = [flip for flip in self.flips if (flip.before, flip.now) == (before, now)]
-            answer.append(
+            lines.append(
                 f"  {before} to {now}: {len(flipped)}" + ("" if before == "OK" else ", would be released")
             )
             scores = [(flip.name, _score(flip.worst_before), _score(flip.worst_now)) for flip in flipped]
-            answer += [f"    {name}: worst score {worst} to {now_worst}" for name, worst, now_worst in scores]
+            lines += [f"    {name}: highest score {worst} to {new}" for name, worst, new in scores]
         others = [flip for flip in self.flips if Verdict.ERROR in (flip.before, flip.now)]
-        answer += [f"  {flip.name}: {flip.before} to {flip.now}" for flip in others]
+        lines += [f"  {flip.name}: {flip.before} to {flip.now}" for flip in others]
         if self.same_judge:
             alike = self.same_judge - len(self.not_alike)
-            answer.append(
-                f"same networks, limits and settings: {self.same_judge}, of which {alike} agree to the bit"
+            lines.append(
+                f"same networks, limits and settings: {self.same_judge}, of which {alike} agree bit for bit"
             )
-        return answer
+        return lines
 
 
 def compare(sources: Sequence[Source], results: Mapping[str, Replayed], judge: Provenance) -> Comparison:
-    """Compare the results of frames that come from an archive with their records."""
+    """Compare the results of frames from an archive with their records."""
     same, not_alike, flips, problems, compared = 0, [], [], [], 0
     for source in sources:
         if source.archive is None or source.row is None:
@@ -73,8 +76,22 @@ def compare(sources: Sequence[Source], results: Mapping[str, Replayed], judge: P
             if (before.verdict, scores, before.findings) != (now.verdict, now.scores, now.findings):
                 not_alike.append(source.name)
         if before.verdict is not now.verdict:
-            flips.append(Flip(source.name, before.verdict, now.verdict, max(scores, default=None), now.worst))
-    return Comparison(compared, same, tuple(not_alike), tuple(flips), tuple(problems))
+            flips.append(
+                Flip(
+                    name=source.name,
+                    before=before.verdict,
+                    now=now.verdict,
+                    worst_before=max(scores, default=None),
+                    worst_now=now.worst,
+                )
+            )
+    return Comparison(
+        compared=compared,
+        same_judge=same,
+        not_alike=tuple(not_alike),
+        flips=tuple(flips),
+        problems=tuple(problems),
+    )
 
 
 def _judged_by(provenance: Provenance) -> tuple[object, ...]:

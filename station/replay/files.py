@@ -1,4 +1,4 @@
-"""Finds the images to be judged, and the record of each that comes from an archive."""
+"""Finds the images to judge, and the records of those that come from an archive."""
 
 import os
 from collections.abc import Iterable, Iterator
@@ -13,22 +13,22 @@ from station.files.image import SUFFIXES
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """One image, with the archive and the row of its record if it has one."""
+    """One image to judge."""
 
     name: str
-    """Unique; relative to the folder that all paths have in common."""
+    """Unique name: the path relative to the folder that all images have in common."""
     path: Path
     archive: Path | None = None
-    """Folder of the archive; None, as the row, if the image does not come from one."""
+    """Folder of the archive; None, like `row`, if the image does not come from an archive."""
     row: Row | None = None
 
 
 def sources(paths: Iterable[Path]) -> list[Source]:
     """Return the images among `paths`.
 
-    Folders are searched all the way down in the order of names; links to folders are not followed. An archive
-    gives the frames of its records. A file that is found twice is judged once. Raises ImageError if a path
-    does not exist or no image is found, RecordError if an archive cannot be read.
+    Folders are searched recursively in the order of names; links to folders are not followed. For an archive,
+    the frames of its records are returned. A file that is found twice is judged once. Raises ImageError if a
+    path does not exist or no image is found, RecordError if an archive cannot be read.
     """
     found: dict[Path, tuple[Path, Path | None, Row | None]] = {}
     for path in paths:
@@ -60,5 +60,5 @@ def _below(folder: Path) -> Iterator[Path]:
 def _real(path: Path) -> Path:
     try:
         return path.resolve()
-    except (OSError, RuntimeError):  # a loop of links: reading it reports that
+    except (OSError, RuntimeError):  # a loop of links, which is reported when the file is read
         return path.absolute()

@@ -1,4 +1,4 @@
-"""Reads one image and judges it as the line would."""
+"""Reads one image and judges it like the line."""
 
 from collections.abc import Sequence
 
@@ -14,21 +14,21 @@ from station.replay.replayed import Circle, Replayed
 
 
 def judge_image(inspector: Inspector, source: Source, factor: float) -> Replayed:
-    """Read an image, enlarge it by `factor`, which brings it to the scale of the settings, and inspect it."""
+    """Read an image, scale it by `factor` to the scale of the settings, and inspect it."""
     try:
         image, warnings = read_marked(source.path)
     except ImageError as error:
         return _not_inspected(source, str(error))
     try:
         inspection = inspector.inspect(at_scale(image, factor))
-    except Exception as error:  # noqa: BLE001 - one image must not end the others
-        said = str(error).splitlines()[0][:100] if str(error) else ""
-        return _not_inspected(source, f"{source.path}: could not be judged ({type(error).__name__}: {said})")
+    except Exception as error:  # noqa: BLE001 - one bad image must not stop the others
+        text = str(error).splitlines()[0][:100] if str(error) else ""
+        return _not_inspected(source, f"{source.path}: could not be judged ({type(error).__name__}: {text})")
     return as_replayed(source.name, inspection, factor, [f"{source.path}: {warning}" for warning in warnings])
 
 
 def at_scale(image: Image, factor: float) -> Image:
-    """Return `image` (H, W) uint8 enlarged by `factor`."""
+    """Return `image` (height, width) uint8 scaled by `factor`."""
     if factor == 1:
         return image
     method = cv2.INTER_AREA if factor < 1 else cv2.INTER_LINEAR
@@ -36,7 +36,7 @@ def at_scale(image: Image, factor: float) -> Image:
 
 
 def as_replayed(name: str, inspection: Inspection, factor: float, warnings: Sequence[str] = ()) -> Replayed:
-    """Return the result of inspecting an image that was enlarged by `factor`."""
+    """Return the result of inspecting an image that was scaled by `factor`."""
     timing = inspection.timing
     steps = (timing.locate_ms, timing.unwrap_ms, timing.classify_ms)
     return Replayed(
@@ -58,7 +58,7 @@ def _circle(inspection: Inspection, factor: float) -> Circle | None:
         return None
     if factor == 1:
         return Circle(ring.center_x_px, ring.center_y_px, ring.radius_px)
-    # OpenCV keeps the borders of the image in place, not the centres of its pixels
+    # resizing keeps the borders of the image in place, not the centres of its pixels
     x, y = ((center + 0.5) / factor - 0.5 for center in (ring.center_x_px, ring.center_y_px))
     return Circle(x, y, ring.radius_px / factor)
 

@@ -1,4 +1,4 @@
-"""The result of judging one recorded image again."""
+"""Result of judging one recorded image again."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from station.domain import Finding, Verdict
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """The ring in pixels of the image as it was read, whatever scale it was judged at."""
+    """Ring in pixels of the image as it was read, before it was scaled."""
 
     center_x_px: float
     center_y_px: float
@@ -16,30 +16,30 @@ class Circle:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replayed:
-    """One recorded image as it is judged now, or the reason why it could not be."""
+    """Result for one recorded image, or the reason why it could not be judged."""
 
     name: str
-    """Name of the image among all images of the replay."""
+    """Name of the image, unique in the replay."""
     verdict: Verdict
     reason: str | None
     """Reason of the verdict, or why the image was not inspected; None for OK."""
     circle: Circle | None = None
-    """None: no ring was found."""
+    """Ring of the weld; None if no ring was found."""
     scores: tuple[float, ...] = ()
-    """Probability of NOK of each of the 21 segments; empty if none was judged."""
+    """Score of NOK of each of the 21 segments; empty if none was judged."""
     findings: tuple[Finding, ...] = ()
     novelty: float | None = None
     inspection_ms: float | None = None
-    """None: the image could not be read or inspected."""
+    """Duration of the inspection; None if the image could not be read or inspected."""
     warnings: tuple[str, ...] = ()
-    """What reading the image lost, a line each."""
+    """One line for each kind of loss in the image file, such as JPEG compression."""
 
     @property
     def problem(self) -> str | None:
-        """Why the image could not be inspected; None if it was."""
+        """Reason why the image could not be inspected; None if it was inspected."""
         return self.reason if self.inspection_ms is None else None
 
     @property
     def worst(self) -> float | None:
-        """Highest score among the segments; None if none was judged."""
+        """Highest score of NOK among the segments; None if none was judged."""
         return max(self.scores, default=None)

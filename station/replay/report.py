@@ -1,4 +1,4 @@
-"""The results of a replay as a page: counts, images of flipped verdicts, errors where the truth is known."""
+"""Report of a replay: counts, images of flipped verdicts, and errors if the truth is known."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -17,36 +17,41 @@ from station.replay.files import Source
 from station.replay.replayed import Replayed
 
 SHOWN = 40
-"""Largest number of welds in one gallery."""
+"""Maximum number of welds in one gallery."""
 FLIPS = (
     (Verdict.NOK, Verdict.OK, "NOK on the line, OK now: would be released"),
     (Verdict.OK, Verdict.NOK, "OK on the line, NOK now"),
 )
+"""Flips that have a gallery: verdict before, verdict now, title."""
 TEMPLATE = Path(__file__).with_name("report.html.j2")
+"""Template of the report."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AgainstLine:
-    """The verdicts of the replay next to those of the line."""
+    """Comparison of the verdicts of the replay with those of the line."""
 
     compared: int
+    """Number of parts that were compared."""
     flipped: int
+    """Number of verdicts that flip."""
     flips: tuple[Gallery, ...]
     errors: tuple[str, ...]
-    """Flips from or to ERROR, a line each."""
+    """One line for each flip from or to ERROR."""
     not_alike: tuple[str, ...]
+    """Names of the records that are not reproducible."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplayPage:
-    """The content of report.html.j2; rows are pairs of a name and a text."""
+    """Content of report.html.j2."""
 
     title: str
     summary: Rows
     line: AgainstLine | None
-    """None: none of the images comes from an archive."""
+    """Comparison with the line; None if no image comes from an archive."""
     truth: Rows | None
-    """None: the truth is not known."""
+    """Errors against the truth; None if the truth is not known."""
     wrong: tuple[Gallery, ...]
     problems: tuple[str, ...]
 
@@ -86,7 +91,7 @@ def write_page(
 
 
 def _errors(truth: Mapping[str, str], results: Mapping[str, Replayed]) -> Errors:
-    """Return the errors against a truth, which may name files with or without folder and suffix."""
+    """Return the errors against a truth that names files with or without folder and suffix."""
     names = {key: name for name in results for key in (Path(name).stem, Path(name).name, name)}
     return errors(
         {names[key]: true for key, true in truth.items() if key in names},
@@ -100,11 +105,11 @@ def _against_line(comparison: Comparison, welds: "_Welds") -> AgainstLine:
         names.setdefault((flip.before, flip.now), []).append(flip.name)
     to_error = [flip for flip in comparison.flips if Verdict.ERROR in (flip.before, flip.now)]
     return AgainstLine(
-        comparison.compared,
-        len(comparison.flips),
-        welds.galleries(*((title, names.get((before, now), [])) for before, now, title in FLIPS)),
-        tuple(f"{flip.name}: {flip.before} to {flip.now}" for flip in to_error),
-        tuple(comparison.not_alike),
+        compared=comparison.compared,
+        flipped=len(comparison.flips),
+        flips=welds.galleries(*((title, names.get((before, now), [])) for before, now, title in FLIPS)),
+        errors=tuple(f"{flip.name}: {flip.before} to {flip.now}" for flip in to_error),
+        not_alike=tuple(comparison.not_alike),
     )
 
 
@@ -114,7 +119,7 @@ def _wrong(found: Errors, welds: "_Welds") -> tuple[Gallery, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _Welds:
-    pictures: Mapping[str, Path]
+    images: Mapping[str, Path]
     results: Mapping[str, Replayed]
 
     def galleries(self, *titled: tuple[str, Sequence[str]]) -> tuple[Gallery, ...]:
@@ -129,8 +134,11 @@ class _Welds:
         replayed = self.results[name]
         circle, worst = replayed.circle, replayed.worst
         ring = None if circle is None else Ring(circle.center_x_px, circle.center_y_px, circle.radius_px, 1.0)
-        lines = (f"{f.kind} at {f.start_deg:.0f}°, {f.length_mm:.2f} mm long" for f in replayed.findings)
-        score = "" if worst is None else f"worst score {worst:.3f}"
-        said = ", ".join(text for text in (replayed.reason or "", score, "; ".join(lines)) if text)
+        lines = (
+            f"{finding.kind} at {finding.start_deg:.0f}°, {finding.length_mm:.2f} mm long"
+            for finding in replayed.findings
+        )
+        score = "" if worst is None else f"highest score {worst:.3f}"
+        result = ", ".join(text for text in (replayed.reason or "", score, "; ".join(lines)) if text)
         spans = ((finding.start_deg, finding.end_deg) for finding in replayed.findings)
-        return Weld(name, f"{replayed.verdict}: {said}", strip(self.pictures[name], ring, spans))
+        return Weld(name, f"{replayed.verdict}: {result}", strip(self.images[name], ring, spans))

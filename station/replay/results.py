@@ -1,6 +1,6 @@
-"""Results of a replay as files: JSON with everything, CSV with one row per image.
+"""Writes the results of a replay: JSON with all values, CSV with one row per image.
 
-`as_entry` and `from_entry` are the only places that know the JSON form.
+Only `as_entry` and `from_entry` know the JSON form.
 """
 
 import csv
@@ -17,7 +17,7 @@ from station.replay.replayed import Circle, Replayed
 
 
 class FindingEntry(TypedDict):
-    """A finding in the JSON form."""
+    """JSON form of a finding."""
 
     kind: str
     start_deg: float
@@ -29,9 +29,9 @@ class FindingEntry(TypedDict):
 
 
 class Entry(TypedDict):
-    """One image in the JSON form: pixels of the input image, angle 0 at +x, clockwise as seen.
+    """JSON form of the result for one image: pixels of the input image, angle 0 at +x, clockwise as seen.
 
-    An image that could not be inspected has the keys `verdict`, `reason`, `segments` and `findings` alone.
+    An image that could not be inspected has only the keys `verdict`, `reason`, `segments` and `findings`.
     """
 
     center: NotRequired[list[float] | None]
@@ -47,7 +47,7 @@ class Entry(TypedDict):
 
 
 def as_entry(replayed: Replayed) -> Entry:
-    """Return the JSON form, which has neither name nor warnings."""
+    """Return the JSON form of a result, without name and warnings."""
     if replayed.inspection_ms is None:
         return {
             "verdict": str(replayed.verdict),
@@ -71,9 +71,9 @@ def as_entry(replayed: Replayed) -> Entry:
 
 
 def from_entry(name: str, entry: Entry, warnings: Iterable[str] = ()) -> Replayed:
-    """Return the result that has this JSON form.
+    """Return the result with this JSON form.
 
-    Raises ValueError, KeyError, TypeError, AttributeError or IndexError if `entry` is not of this form.
+    Raises ValueError, KeyError, TypeError, AttributeError or IndexError if `entry` does not have this form.
     """
     center, radius = entry.get("center"), entry.get("radius")
     return Replayed(
@@ -114,12 +114,12 @@ def _finding(entry: FindingEntry) -> Finding:
 
 
 def write_json(path: Path, results: Iterable[Replayed]) -> None:
-    """Write all results by name. Raises OSError."""
+    """Write all results as a JSON object by name. Raises OSError."""
     _write(path, json.dumps({replayed.name: as_entry(replayed) for replayed in results}, indent=1))
 
 
 def write_csv(path: Path, results: Iterable[Replayed]) -> None:
-    """Write name, verdict, reason, ring and worst score of each image. Raises OSError."""
+    """Write name, verdict, reason, ring and highest score of each image as CSV. Raises OSError."""
     table = io.StringIO(newline="")
     writer = csv.writer(table)
     writer.writerow(("file", "verdict", "reason", "center_x_px", "center_y_px", "radius_px", "worst_p_nok"))
@@ -131,5 +131,5 @@ def write_csv(path: Path, results: Iterable[Replayed]) -> None:
 
 
 def _write(path: Path, text: str) -> None:
-    """Write the whole file or nothing; characters of file names that UTF-8 cannot hold are escaped."""
+    """Write a file atomically; characters of file names that UTF-8 cannot encode are escaped."""
     write_whole(path, text.encode("utf-8", "backslashreplace"))

@@ -1,4 +1,4 @@
-"""Judges many images on all cores; those that were judged before an interruption are not judged again."""
+"""Judges many images on all cores; after an interruption it continues with those that are left."""
 
 import hashlib
 import json
@@ -23,7 +23,7 @@ from station.replay.results import as_entry, from_entry
 from station.settings.model import Settings
 
 AHEAD = 4
-"""Images that wait for each process: enough to keep it busy, few enough to be stopped."""
+"""Number of images queued per process: enough to keep it busy, few enough to stop quickly."""
 
 _inspector: Inspector | None = None
 
@@ -37,10 +37,10 @@ def replay(
     processes: int,
     part: Path | None,
 ) -> Iterator[Replayed]:
-    """Yield a result for each image as soon as it is judged; images are enlarged by `factor` first.
+    """Yield a result for each image as soon as it is judged; images are scaled by `factor` first.
 
-    `judge` is loaded from the settings. `part` is the file of an interrupted run; it is continued, and kept
-    until the caller removes it. Raises ModelError.
+    `judge` was loaded from the settings. `part` is the file that makes an interrupted run resumable; the
+    caller deletes it. Raises ModelError.
     """
     inspector, provenance = judge
     key = hashlib.sha256(f"{asdict(provenance)} {factor}".encode()).hexdigest()
@@ -54,8 +54,8 @@ def replay(
             todo.append((source, mark))
     with ExitStack() as stack:
         file = None if part is None else stack.enter_context(_opened(part, key, bool(known)))
-        plain = processes == 1 or len(todo) < 2 * processes
-        judged = _plainly(todo, inspector, factor) if plain else _pooled(todo, settings, factor, processes)
+        single = processes == 1 or len(todo) < 2 * processes
+        judged = _single(todo, inspector, factor) if single else _pooled(todo, settings, factor, processes)
         for mark, replayed in judged:
             if file is not None and replayed.problem is None:
                 file.write(_line(mark, replayed))
@@ -64,19 +64,21 @@ def replay(
 
 
 Marked = tuple[Source, str]
+"""Image with the mark that identifies it in the file of an interrupted run."""
 Judged = tuple[str, Replayed]
+"""Mark of an image with its result."""
 
 
-def _plainly(todo: list[Marked], inspector: Inspector, factor: float) -> Iterator[Judged]:
+def _single(todo: list[Marked], inspector: Inspector, factor: float) -> Iterator[Judged]:
     for source, mark in todo:
         yield mark, judge_image(inspector, source, factor)
 
 
 def _pooled(todo: list[Marked], settings: Settings, factor: float, processes: int) -> Iterator[Judged]:
     model = settings.model.model_copy(update={"threads": 1, "reference_path": None})
-    alone = settings.model_copy(update={"model": model})
+    own = settings.model_copy(update={"model": model})
     waiting: list[tuple[str, Future[Replayed]]] = []
-    with ProcessPoolExecutor(processes, get_context("spawn"), _begin, (alone,)) as pool:
+    with ProcessPoolExecutor(processes, get_context("spawn"), _begin, (own,)) as pool:
         try:
             for source, mark in todo:
                 waiting.append((mark, pool.submit(_judge, source, factor)))
@@ -86,8 +88,9 @@ def _pooled(todo: list[Marked], settings: Settings, factor: float, processes: in
             for mark, future in waiting:
                 yield mark, future.result()
         except BrokenProcessPool:
-            why = "a process of the replay ended, perhaps for lack of memory. Use fewer --processes"
-            raise ModelError(why) from None
+            raise ModelError(
+                "a process of the replay ended unexpectedly, perhaps out of memory; use fewer --processes"
+            ) from None
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -100,13 +103,13 @@ def _begin(settings: Settings) -> None:
     import cv2
 
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends the work
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent stops the work
     cv2.setNumThreads(1)
     _inspector = load_inspector(settings)[0]
 
 
 def _end_with_parent() -> None:
-    """A parent that was killed cannot end its processes."""
+    """End this process when its parent ends, because a killed parent cannot end it."""
     parent = parent_process()
     if parent is not None:
         parent.join()
@@ -128,10 +131,10 @@ def _mark(source: Source) -> str:
 
 
 def _line(mark: str, replayed: Replayed) -> str:
-    """One line of the file of an interrupted run; `_known` reads it."""
+    """Return the line of a result in the file of an interrupted run; `_known` reads it."""
     entry, warnings = as_entry(replayed), replayed.warnings
-    kept = {"name": replayed.name, "entry": entry, "problem": None, "warnings": warnings}
-    return json.dumps([mark, kept]) + "\n"
+    stored = {"name": replayed.name, "entry": entry, "problem": None, "warnings": warnings}
+    return json.dumps([mark, stored]) + "\n"
 
 
 def _known(part: Path, key: str) -> dict[str, Replayed]:
@@ -144,10 +147,10 @@ def _known(part: Path, key: str) -> dict[str, Replayed]:
         return known
     for line in lines[1:]:
         try:
-            mark, kept = json.loads(line)
-            known[mark] = from_entry(kept["name"], kept["entry"], kept["warnings"])
+            mark, stored = json.loads(line)
+            known[mark] = from_entry(stored["name"], stored["entry"], stored["warnings"])
         except (ValueError, KeyError, TypeError, AttributeError, IndexError):
-            continue  # cut off in the middle of the line: that image is judged again
+            continue  # the line is incomplete: this image is judged again
     return known
 
 

@@ -1,1 +1,1 @@
-"""station.toml and what was changed at the station, as checked values."""
+"""Settings: station.toml and the changes made at the station, validated."""

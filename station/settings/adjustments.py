@@ -1,6 +1,6 @@
-"""What was changed at the station: a small JSON file next to the settings file, laid over it when it is read.
+"""Reads the changes made at the station: a small JSON file next to the settings file that overrides it.
 
-Read here; `settings_change` alone writes it.
+Only `station.engine.settings_change` writes this file.
 """
 
 import json
@@ -13,36 +13,41 @@ from station.settings.model import merged
 from station.settings.renamed import with_new_names
 
 SECTIONS = ("weld", "quality", "model")
+"""Sections of a recipe that can be changed at the station."""
 
 
 def path_of(settings: Path) -> Path:
-    """station.toml has station.adjusted.json."""
+    """Return the path of the changes to a settings file: station.adjusted.json for station.toml."""
     return settings.with_suffix(".adjusted.json")
 
 
 def read(settings: Path) -> dict[str, Any]:
-    """{"camera": {key: value}, "recipes": {number: {section: {key: value}}}}; empty if nothing was changed. Raises SettingsError."""
+    """Return the changes made at the station to a settings file, empty if there are none.
+
+    They have the form {"camera": {key: value}, "recipes": {number: {section: {key: value}}}}.
+    Raises SettingsError.
+    """
     path = path_of(settings)
     try:
-        found = json.loads(path.read_text())
+        changes = json.loads(path.read_text())
     except FileNotFoundError:
         return {}
     except (OSError, ValueError) as error:
         raise SettingsError(
-            f"{path}: cannot be read ({error}); restore it, or remove it to go back to the settings file"
+            f"{path}: cannot be read ({error}); restore it, or delete it to return to the settings file"
         ) from None
-    if not _is_ours(found):
+    if not _has_the_form(changes):
         raise SettingsError(
-            f"{path}: is not what the station writes; remove it to go back to the settings file"
+            f"{path}: not a file of changes made at the station; delete it to return to the settings file"
         )
-    return with_new_names(found)
+    return with_new_names(changes)
 
 
-def _is_ours(found: object) -> TypeGuard[dict[str, Any]]:
-    if not isinstance(found, dict) or not set(found) <= {"camera", "recipes"}:
+def _has_the_form(changes: object) -> TypeGuard[dict[str, Any]]:
+    if not isinstance(changes, dict) or not set(changes) <= {"camera", "recipes"}:
         return False
-    recipes = found.get("recipes", {})
-    if not isinstance(found.get("camera", {}), dict) or not isinstance(recipes, dict):
+    recipes = changes.get("recipes", {})
+    if not isinstance(changes.get("camera", {}), dict) or not isinstance(recipes, dict):
         return False
     sections = [
         section
@@ -53,17 +58,20 @@ def _is_ours(found: object) -> TypeGuard[dict[str, Any]]:
 
 
 def words(settings: Path) -> list[str]:
-    """What was changed, one line a value, as model.limits.hole.threshold = 0.5 (recipe 1). Raises SettingsError."""
-    found = read(settings)
-    lines = [f"camera.{key} = {value}" for key, value in found.get("camera", {}).items()]
-    for number, sections in found.get("recipes", {}).items():
+    """Return one line per changed value, such as "model.limits.hole.threshold = 0.5 (recipe 1)".
+
+    Raises SettingsError.
+    """
+    changes = read(settings)
+    lines = [f"camera.{key} = {value}" for key, value in changes.get("camera", {}).items()]
+    for number, sections in changes.get("recipes", {}).items():
         for section, values in sections.items():
             lines += [f"{section}.{key} = {value} (recipe {number})" for key, value in _leaves(values)]
     return lines
 
 
 def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
-    """Yield a section's values, the limits of each kind of defect by their dotted keys."""
+    """Yield the values of a section; limits of defect kinds have dotted keys."""
     for key, value in values.items():
         if key == "limits" and isinstance(value, Mapping):
             for kind, own in value.items():
@@ -73,31 +81,30 @@ def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
 
 
 def laid_over(raw: dict[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings as read, with the changes in their places."""
-    answer = dict(raw)
+    """Return the settings `raw`, overridden by the changes."""
+    settings = dict(raw)
     if changes.get("camera"):
-        answer["camera"] = {**raw.get("camera", {}), **changes["camera"]}
+        settings["camera"] = {**raw.get("camera", {}), **changes["camera"]}
     for number, sections in changes.get("recipes", {}).items():
-        recipes = dict(answer.get("recipes", {}))
+        recipes = dict(settings.get("recipes", {}))
         recipe = dict(recipes.get(number, {}))
         for section, values in sections.items():
             recipe[section] = merged(recipe.get(section, {}), values)
-        answer["recipes"] = {**recipes, number: recipe}
-    return answer
+        settings["recipes"] = {**recipes, number: recipe}
+    return settings
 
 
 def at(changes: Mapping[str, Any], place: Sequence[str]) -> object:
-    """The value at ("recipes", "1", "model", "limits", "hole", "threshold"), or None."""
-    found: Any = changes
+    """Return the value at a place such as ("recipes", "1", "quality", "min_sharpness"), or None."""
+    value: Any = changes
     for name in place:
-        found = found.get(name) if isinstance(found, Mapping) else None
-    return found
+        value = value.get(name) if isinstance(value, Mapping) else None
+    return value
 
 
 def put(changes: Mapping[str, Any], place: Sequence[str], value: object) -> dict[str, Any]:
-    """The same with another value there; None takes it out."""
+    """Return the changes with this value at a place; None removes the value there."""
     name, rest = place[0], place[1:]
     inner = put(changes.get(name, {}), rest, value) if rest else value
-    return {k: v for k, v in changes.items() if k != name} | (
-        {} if inner is None or (inner == {} and rest) else {name: inner}
-    )
+    others = {key: other for key, other in changes.items() if key != name}
+    return others if inner is None or (inner == {} and rest) else others | {name: inner}

@@ -1,4 +1,4 @@
-"""The section [camera]: one class for each make; `make_camera` makes the camera that it describes."""
+"""The section [camera]: one class per make of camera; `make_camera` makes the camera from it."""
 
 from pathlib import Path
 from typing import Literal
@@ -10,31 +10,31 @@ from station.settings.section import Section
 
 
 class CameraSettings(Section):
-    """What the station asks of every camera's settings, whatever the make.
+    """Settings that every make of camera provides to the station.
 
-    The order of the keys counts: CONFIG_CRC is made from it. Add new ones at the end.
+    The order of the keys affects CONFIG_CRC: add new ones at the end.
     """
 
     kind: str
 
     @property
     def origin(self) -> Origin:
-        """Where the frames come from; only a real camera's parts may be released."""
+        """Source of the frames; only frames from a real camera can release a part."""
         return Origin.CAMERA
 
     @property
     def identity(self) -> tuple[str, ...]:
-        """Which device it is: another one is refused while the station runs."""
+        """Values that identify the device; they cannot be changed while the station runs."""
         return (self.kind,)
 
     @property
     def adjustable(self) -> tuple[float, float] | None:
-        """Exposure in µs and gain in dB, where people may set `exposure_us` and `gain_db`; None if there are none."""
+        """Exposure in µs and gain in dB if `exposure_us` and `gain_db` can be adjusted, else None."""
         return None
 
 
 class PylonSettings(CameraSettings):
-    """A Basler camera, real or emulated, through pypylon."""
+    """Settings of a Basler camera, real or emulated, that pypylon drives."""
 
     kind: Literal["pylon"]
     device_class: Literal["BaslerGigE", "BaslerCamEmu"] = "BaslerGigE"
@@ -49,12 +49,12 @@ class PylonSettings(CameraSettings):
 
     @property
     def origin(self) -> Origin:
-        """Where the frames come from: an emulated camera's parts carry the SIMULATED flag."""
+        """Source of the frames; parts of an emulated camera carry the SIMULATED flag."""
         return Origin.SIMULATED if self.device_class == "BaslerCamEmu" else Origin.CAMERA
 
     @property
     def identity(self) -> tuple[str, ...]:
-        """Make, class and serial number."""
+        """Make, device class and serial number."""
         return self.kind, self.device_class, self.serial
 
     @property
@@ -64,7 +64,7 @@ class PylonSettings(CameraSettings):
 
 
 class ReplaySettings(CameraSettings):
-    """Recorded images from a folder, in the order of their names, once each."""
+    """Settings of a folder of recorded images, which are used once each in the order of their names."""
 
     kind: Literal["replay"]
     folder: Path
@@ -72,9 +72,9 @@ class ReplaySettings(CameraSettings):
 
     @property
     def origin(self) -> Origin:
-        """Where the frames come from: to the PLC, replayed parts read TEST."""
+        """Source of the frames; the PLC reads the verdict TEST for replayed parts."""
         return Origin.REPLAY
 
 
 AnyCamera = PylonSettings | ReplaySettings
-"""Settings of any camera: `camera.kind` says of which."""
+"""Settings of a camera of any make; `camera.kind` selects the make."""

@@ -1,4 +1,4 @@
-"""Reads station.toml. Relative paths count from the file's folder."""
+"""Reads station.toml; relative paths are resolved against the folder of the file."""
 
 import tomllib
 from pathlib import Path
@@ -14,58 +14,58 @@ from station.settings.renamed import with_new_names
 
 
 def load(path: Path, changes: dict[str, Any] | None = None) -> Settings:
-    """Return a TOML file with what was changed at the station laid over it.
+    """Return the settings in a TOML file, overridden by the changes made at the station.
 
-    `changes` replace what was changed at the station, before they are written. Raises SettingsError naming file,
-    key and what is allowed.
+    `changes`, if given, are used instead of the stored changes, to check them before they are written.
+    Raises SettingsError with file, key and the values that are allowed.
     """
     try:
         with path.open("rb") as file:
             raw = tomllib.load(file)
     except FileNotFoundError:
         raise SettingsError(
-            f"{path}: no such settings file; name one with -c, or copy deploy/station.toml"
+            f"{path}: settings file not found; name one with -c, or copy deploy/station.toml"
         ) from None
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: cannot be read: {error}") from None
     except tomllib.TOMLDecodeError as error:
         raise SettingsError(f"{path}: not valid TOML: {error}") from None
-    over = read(path) if changes is None else changes
+    overrides = read(path) if changes is None else changes
     try:
         raw = with_new_names(raw)
     except SettingsError as error:
         raise SettingsError(f"{path}: {error}") from None
-    raw = laid_over(raw, over)
+    raw = laid_over(raw, overrides)
     try:
         settings = Settings.model_validate(raw)
         for number in settings.recipes:
             for_recipe(settings, number)
     except ValidationError as error:
         if changes is not None:
-            raise SettingsError(_first(error)) from None
+            raise SettingsError(_message(error)) from None
         name = path_of(path).name
-        also = f" (with what was changed at the station: {name}; remove it to go back)" if over else ""
-        raise SettingsError(f"{path}{also}: {_first(error)}") from None
+        also = f" (with the changes made at the station: {name}; delete it to undo them)" if overrides else ""
+        raise SettingsError(f"{path}{also}: {_message(error)}") from None
     return _anchored(settings, path.resolve().parent)
 
 
-def _first(error: ValidationError) -> str:
-    def told(e: ErrorDetails) -> str:
-        section, *keys = e["loc"] or ("",)
+def _message(error: ValidationError) -> str:
+    def line(details: ErrorDetails) -> str:
+        section, *keys = details["loc"] or ("",)
         if section == "camera":
             keys = keys[1:]  # the first is the camera's kind
         place = ".".join(map(str, (section, *keys)))
-        return f"{place}: {e['msg'].removeprefix('Value error, ')}"
+        return f"{place}: {details['msg'].removeprefix('Value error, ')}"
 
-    return "; ".join(map(told, error.errors()))
+    return "; ".join(map(line, error.errors()))
 
 
 def _under(folder: Path, values: dict[str, Any]) -> dict[str, Path]:
-    """Return the paths among a section's values, counted from the folder."""
-    named = {
+    """Return the paths among the values of a section, resolved against the folder."""
+    paths = {
         key: value for key, value in values.items() if key in ("path", "folder") or key.endswith("_path")
     }
-    return {key: folder / value for key, value in named.items() if value is not None}
+    return {key: folder / value for key, value in paths.items() if value is not None}
 
 
 def _anchored(settings: Settings, folder: Path) -> Settings:

@@ -1,4 +1,4 @@
-"""station.toml as checked values."""
+"""The sections and values of station.toml, with their defaults and allowed ranges."""
 
 from collections.abc import Mapping
 from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
@@ -14,12 +14,15 @@ from station.settings.camera import AnyCamera, ReplaySettings
 from station.settings.section import Section
 
 Port = Annotated[int, Field(ge=1, le=65535)]
-Share = Annotated[float, Field(ge=0.0, le=1.0)]
+"""TCP port."""
+Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
+"""Number from 0 to 1."""
 KindName = Annotated[str, AfterValidator(lambda name: kind_named(name).name)]
+"""Name of a known kind of defect."""
 
 
 class WeldSettings(Section):
-    """What is known of the weld."""
+    """Size of the weld in mm, and scale of the image."""
 
     radius_mm: float = Field(default=5.564, gt=0)
     radius_tolerance_mm: float = Field(default=0.156, gt=0)
@@ -27,43 +30,43 @@ class WeldSettings(Section):
 
 
 class QualitySettings(Section):
-    """Limits of the image quality gate, on the strip."""
+    """Limits of the image quality gate, which is measured on the strip."""
 
     min_mean_dn: float = Field(default=12.0, ge=0, le=255)
-    max_dark_share: Share = 0.6
-    max_saturated_share: Share = 0.35
+    max_dark_share: Fraction = 0.6
+    max_saturated_share: Fraction = 0.35
     min_sharpness: float = Field(default=0.01, ge=0)
 
 
 class LimitSettings(Section):
     """Limits of one kind of defect."""
 
-    threshold: Share | None = None
-    """Score from which a segment is rejected; None: as the classifier file says."""
+    threshold: Fraction | None = None
+    """Score from which a segment is rejected; None: the threshold in the classifier file."""
     min_mm: float = Field(default=0.0, ge=0, le=5)
-    """Shorter findings are reported but tolerated, if they could be measured."""
+    """Minimum length: shorter findings are reported but tolerated, if they could be measured."""
 
 
 class ModelSettings(Section):
-    """The networks, and the limits of the decision."""
+    """Network files, self-test, and limits of the decision."""
 
     path: Path = Path("weldgate.onnx")
     ring_path: Path = Path("ring.onnx")
     reference_path: Path | None = None
-    """Look of the line's own good parts; without it drifting pictures are not watched for."""
+    """File with the appearance of the line's own good parts; None: drift is not monitored."""
     threads: int = Field(default=2, ge=1, le=64)
     self_test_path: Path | None = None
-    """Frame that is judged at the start and again while idle: its scores must never change."""
+    """Frame of the self-test, judged at the start and while idle; its scores must never change."""
     self_test_verdict: Literal["OK", "NOK"] | None = None
-    """What must be found in it at the start."""
+    """Verdict that the self-test must give at the start."""
     self_test_s: float = Field(default=10.0, ge=0.5, le=3600)
-    """Idle time between two self-tests."""
+    """Idle time between two self-tests, in seconds."""
     limits: dict[KindName, LimitSettings] = Field(default_factory=dict)
-    """By the name of the kind of defect."""
+    """Limits by name of the kind of defect."""
     segment_thresholds: dict[
         Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]
     ] = Field(default_factory=dict)
-    """Thresholds of single segments, for any kind of defect."""
+    """Thresholds of single segments, which apply to all kinds of defect."""
 
     @model_validator(mode="after")
     def _self_test_is_whole(self) -> "ModelSettings":
@@ -73,25 +76,26 @@ class ModelSettings(Section):
 
 
 class TlsSettings(Section):
-    """Modbus/TCP Security: both sides show a certificate (`weldgate certificates` makes some for trials)."""
+    """Certificates for Modbus/TCP Security; `weldgate certificates` makes some for tests."""
 
     certificate_path: Path
     key_path: Path
     ca_path: Path
-    """Whose certificates are trusted."""
+    """Certificate of the authority whose certificates are trusted."""
 
 
 class GoldenSettings(Section):
-    """Parts known to be good or bad, to be judged when the PLC asks for it."""
+    """Masters: parts of known verdict for the master check."""
 
     masters: dict[str, Literal["OK", "NOK"]] = Field(default_factory=dict)
-    """Serial of each master and what the station must find."""
+    """Serial of each master and the verdict that the station must give."""
     due_h: float | None = Field(default=None, gt=0, le=8760)
-    """A master not judged for so long is due: FUNCTION_CHECK, which the PLC's block takes for no release; None: never."""
+    """Hours after which a master must be judged again; a master that is due sets FUNCTION_CHECK, with which
+    the PLC block releases no part. None: never."""
 
 
 class RecipeSettings(Section):
-    """What differs from the sections of the same name for one kind of part."""
+    """Values of one type of part that differ from the sections of the same name."""
 
     weld: dict[str, Any] = Field(default_factory=dict)
     quality: dict[str, Any] = Field(default_factory=dict)
@@ -99,32 +103,37 @@ class RecipeSettings(Section):
 
 
 class PlcSettings(Section):
-    """The PLC: where, who may write, and the times of the handshake."""
+    """Connection to the PLC: address, access and times of the handshake."""
 
     mode: Literal["server", "client"] = "server"
-    """server: the PLC reaches into our registers; client: we reach into the PLC's."""
+    """server: the PLC accesses the registers of the station; client: the station accesses those of the
+    PLC."""
     host: str = "127.0.0.1"
-    """server: our address; client: the PLC's."""
+    """Address of the station (server) or of the PLC (client)."""
     port: Port = 1502
     unit: int = Field(default=1, ge=0, le=255)
     command_base: int = Field(default=COMMAND_START, ge=0, le=65536 - COMMAND_WORDS)
+    """Address of the command window in the PLC (client)."""
     status_base: int = Field(default=STATUS_START, ge=0, le=65536 - STATUS_WORDS)
-    """Addresses of the windows in the PLC (client)."""
+    """Address of the status window in the PLC (client)."""
     poll_ms: int = Field(default=20, ge=5, le=1000)
     timeout_ms: int = Field(default=400, ge=50, le=5000)
-    """Answer to one request (client)."""
+    """Time allowed for the response to one request (client)."""
     low_word_first: bool = False
-    """Word order of 32-bit values; the test pattern shows which one is right."""
+    """True if 32-bit values start with their low word; the test pattern shows whether that is right."""
     allow: tuple[IPv4Network | IPv6Network, ...] = ()
-    """Peers that may connect (server); empty: all."""
+    """Networks from which peers can connect (server); empty: all."""
     writer_idle_ms: int = Field(default=2_000, ge=100, le=600_000)
-    """A peer that has not written for so long loses the right to write to the next (server)."""
+    """Time without a write after which another peer can take over the right to write (server)."""
     tls: TlsSettings | None = None
     deadline_ms: int = Field(default=2000, ge=100, le=60_000)
+    """Time from trigger to result; a later result is ERROR."""
     result_ttl_ms: int = Field(default=10_000, ge=100, le=600_000)
+    """Time after which an unread result is cleared."""
     stuck_ms: int = Field(default=5_000, ge=100, le=600_000)
+    """Time after which a bit that the PLC holds counts as stuck."""
     plc_heartbeat_ms: int = Field(default=2_000, ge=0, le=60_000)
-    """PLC_HEARTBEAT must change within this time; 0: not watched."""
+    """Time within which PLC_HEARTBEAT must change; 0: not monitored."""
 
     @model_validator(mode="after")
     def _windows_apart(self) -> "PlcSettings":
@@ -137,38 +146,41 @@ class PlcSettings(Section):
 
 
 Days = Annotated[int, Field(ge=1, le=36500)]
+"""Retention in days."""
 
 
 class KeepSettings(Section):
-    """How long pictures and records are kept."""
+    """Retention of frames and records."""
 
     ok_all_days: Days = 7
-    """Pictures of all OK parts."""
-    ok_share: Share = 0.1
-    """Of the OK parts after that, chosen by their number."""
+    """Retention of the frames of all OK parts."""
+    ok_share: Fraction = 0.1
+    """Fraction of the OK parts whose frames are kept after that; the part's number decides."""
     ok_days: Days = 90
+    """Retention of the frames of this fraction of the OK parts."""
     nok_days: Days = 730
     error_days: Days = 365
     record_days: Days = 3650
-    """Records themselves."""
+    """Retention of the records themselves."""
     quota_gib: float = Field(default=500.0, gt=0, allow_inf_nan=False)
-    """Of pictures; the oldest OK go first, then those not judged, then NOK."""
+    """Maximum size of all frames; above it the oldest OK frames are deleted first, then ERROR, then NOK."""
 
 
 class ArchiveSettings(Section):
-    """Where records go, and what happens when the disk fills."""
+    """Folder of the records, and what happens when the disk fills up."""
 
     folder: Path = Path("records")
     warn_free_mb: int = Field(default=10_000, ge=1)
-    """Below this the station warns."""
+    """Free space below which the station warns."""
     thin_free_mb: int = Field(default=2_000, ge=1)
-    """Below this pictures of OK parts are left out."""
+    """Free space below which frames of OK parts are not stored."""
     min_free_mb: int = Field(default=500, ge=1)
+    """Free space below which the disk counts as full."""
     when_full: Literal["stop", "no_pictures"] = "stop"
-    """Below min_free_mb: take no parts, or go on with records alone."""
+    """On a full disk, accept no parts (stop), or continue with records but no frames (no_pictures)."""
     keep: KeepSettings = KeepSettings()
     bus_days: Days = 30
-    """How long the edges of the PLC bus are kept."""
+    """Retention of the log of the PLC bus."""
 
     @model_validator(mode="after")
     def _levels_in_order(self) -> "ArchiveSettings":
@@ -179,13 +191,15 @@ class ArchiveSettings(Section):
 
 def _loopback(address: IPv4Address | IPv6Address) -> IPv4Address | IPv6Address:
     if not address.is_loopback:
-        raise ValueError("must be an address of this machine alone, as 127.0.0.1")
+        raise ValueError("must be a loopback address of this machine, such as 127.0.0.1")
     return address
 
 
 class ChannelSettings(Section):
-    """Local channel between engine and panel (ZeroMQ). It knows neither login nor encryption and carries times of this machine's clock:
-    loopback only."""
+    """Local channel between engine and window (ZeroMQ).
+
+    It has no encryption and carries times of this machine's clock, so only loopback addresses are allowed.
+    """
 
     host: Annotated[IPv4Address | IPv6Address, AfterValidator(_loopback)] = IPv4Address("127.0.0.1")
     events_port: Port = 15551
@@ -194,15 +208,16 @@ class ChannelSettings(Section):
 
 
 class PanelSettings(Section):
-    """The operator's window, as it opens."""
+    """State of the operator's window when it opens."""
 
     language: Literal["en", "de"] = "en"
     theme: Literal["dark", "light"] = "dark"
     logout_min: float = Field(default=10.0, ge=0.1, le=480)
+    """Minutes without input after which a user is logged out."""
 
 
 class Settings(Section):
-    """The whole of station.toml."""
+    """All sections of station.toml."""
 
     camera: Annotated[AnyCamera, Field(discriminator="kind")]
     weld: WeldSettings = WeldSettings()
@@ -214,11 +229,11 @@ class Settings(Section):
     golden: GoldenSettings = GoldenSettings()
     panel: PanelSettings = PanelSettings()
     recipes: dict[Annotated[int, Field(ge=1, le=65535)], RecipeSettings] = Field(default_factory=dict)
-    """By number; recipe 1 is the sections as they are, unless it is named here."""
+    """Recipes by number; recipe 1 uses the sections unchanged unless it is listed here."""
 
 
 def for_images(networks: Path) -> Settings:
-    """Settings to judge recorded images by, without a file: the default limits, and the networks in a folder."""
+    """Return settings for recorded images without a settings file: default limits, networks in a folder."""
     camera = ReplaySettings(kind="replay", folder=Path())
     return Settings(
         camera=camera, model=ModelSettings(path=networks / "weldgate.onnx", ring_path=networks / "ring.onnx")
@@ -226,13 +241,16 @@ def for_images(networks: Path) -> Settings:
 
 
 def for_recipe(settings: Settings, number: int) -> Settings:
-    """The settings of one recipe. Raises SettingsError if there is none of that number, pydantic.ValidationError."""
+    """Return the settings of one recipe.
+
+    Raises SettingsError if no recipe has this number, pydantic.ValidationError if its values are not allowed.
+    """
     changes = settings.recipes.get(number)
     if changes is None:
         if number == 1:
             return settings
         raise SettingsError(
-            f"there is no recipe {number}; recipes: {', '.join(map(str, sorted({1, *settings.recipes})))}"
+            f"recipe {number} does not exist; recipes: {', '.join(map(str, sorted({1, *settings.recipes})))}"
         )
     sections: dict[str, Section] = {}
     for name, section in (("weld", settings.weld), ("quality", settings.quality), ("model", settings.model)):
@@ -241,13 +259,13 @@ def for_recipe(settings: Settings, number: int) -> Settings:
 
 
 def merged(values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a section's values with changes laid over them; the limits of each kind of defect key by key."""
-    answer = {**values, **changes}
+    """Return the values of a section overridden by changes; limits are merged per defect kind and key."""
+    result = {**values, **changes}
     before, after = values.get("limits"), changes.get("limits")
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         kinds = {name: _over(before.get(name), own) for name, own in after.items()}
-        answer["limits"] = {**before, **kinds}
-    return answer
+        result["limits"] = {**before, **kinds}
+    return result
 
 
 def _over(before: object, after: object) -> object:

@@ -1,4 +1,4 @@
-"""Names that settings had before, so that old settings files and old changes at the station are still read; pure."""
+"""Former names of settings, so that old settings files and old changes can still be read; pure."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,38 +11,38 @@ LIMITS = {
     "hole_min_mm": ("hole", "min_mm"),
     "missing_min_mm": ("missing_weld", "min_mm"),
 }
-"""Keys of [model] before [model.limits.KIND] took their place."""
+"""Former keys of [model], with defect kind and key under [model.limits.KIND] that replace them."""
 
 
 def with_new_names(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a settings table, or the changes made at the station, with today's names.
+    """Return settings, or changes made at the station, with the current names.
 
     Raises SettingsError if a value is given under its old and its new name.
     """
-    answer = dict(raw)
+    result = dict(raw)
     if isinstance(raw.get("model"), Mapping):
-        answer["model"] = _model(raw["model"], "model")
+        result["model"] = _model(raw["model"], "model")
     if isinstance(raw.get("recipes"), Mapping):
-        answer["recipes"] = {
+        result["recipes"] = {
             number: {**recipe, "model": _model(recipe["model"], f"recipes.{number}.model")}
             if isinstance(recipe, Mapping) and isinstance(recipe.get("model"), Mapping)
             else recipe
             for number, recipe in raw["recipes"].items()
         }
-    return answer
+    return result
 
 
 def _model(section: Mapping[str, Any], place: str) -> dict[str, Any]:
-    answer = {key: value for key, value in section.items() if key not in LIMITS}
+    result = {key: value for key, value in section.items() if key not in LIMITS}
     for old, (kind, key) in LIMITS.items():
         if old not in section:
             continue
-        limits = answer.setdefault("limits", {})
+        limits = result.setdefault("limits", {})
         if not isinstance(limits, Mapping) or not isinstance(limits.get(kind, {}), Mapping):
-            return dict(section)  # refused by the checks that follow, which name the place
+            return dict(section)  # the checks that follow refuse it and name the place
         if key in limits.get(kind, {}):
             raise SettingsError(
-                f"{place}.{old} is the old name of {place}.limits.{kind}.{key}; give one of them"
+                f"{place}.{old} is the old name of {place}.limits.{kind}.{key}; give only one of them"
             )
-        answer["limits"] = {**limits, kind: {**limits.get(kind, {}), key: section[old]}}
-    return answer
+        result["limits"] = {**limits, kind: {**limits.get(kind, {}), key: section[old]}}
+    return result

@@ -1,9 +1,9 @@
-"""What all sections of station.toml have in common."""
+"""Rules that apply to every section of station.toml."""
 
 from pydantic import BaseModel, ConfigDict
 
 
 class Section(BaseModel):
-    """Base of all sections: unknown keys are mistakes, values never change."""
+    """Base class of all sections: unknown keys are refused, values are immutable."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -1,1 +1,1 @@
-"""From frame to strip: find the ring, judge the picture, unwrap it. Pure functions."""
+"""From frame to strip: find the ring, measure image quality, unwrap the weld. Pure functions."""

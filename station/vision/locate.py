@@ -1,12 +1,15 @@
-"""Find the weld's circle in a frame, with sub-pixel centre and radius; never guess.
+"""Finds the ring of the weld in a frame with sub-pixel centre and radius, or raises an error.
 
-The circle's radius is known within a few per cent, so bores and grooves of other sizes cannot be taken for it. Steps:
+The radius is known within a few per cent, so bores and grooves of other sizes are not mistaken for the weld.
+Steps:
 
-1. coarse: a map of fine structure at 1/8 size, correlated with a ring; weld and bare joint both show as a ridge.
-2. fine: a band round that circle is flattened; a network trained on rendered welds says for each of 84 sectors how far off the
-   weld's centre line runs, and whether there is weld or joint at all; a circle is fitted to them, outliers weighed down. Twice.
-3. support: the share of sectors that are there and lie on the circle; if it is low, there is no weld.
-"""
+1. coarse: a map of fine structure at 1/8 size is correlated with a ring; weld and bare joint both show as a
+   ridge.
+2. fine, done twice: a band around that circle is unwrapped. For each of its 84 sectors a network, trained on
+   rendered welds, gives the offset of the weld's centre line and the probability that weld or joint is
+   present. A circle is fitted to the offsets, with low weights for outliers.
+3. support: the fraction of sectors in which weld or joint is present and lies on the circle. If it is low, no
+   weld was found."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,13 +26,19 @@ from station.vision.unwrap import in_view
 Field = NDArray[np.float32]
 Array = NDArray[np.float64]
 SectorFinder = Callable[[Image], tuple[Array, Array]]
-"""Band (192, 672) uint8 to offsets in px (84,), outwards positive, and presence 0..1 (84,)."""
+"""Function from a band (192, 672) uint8 to offsets in px (84,), positive outwards, and presence 0 to 1
+(84,)."""
 
 SCALE = 8
+"""Factor by which the image is reduced for the coarse step."""
 MIN_COARSE = 0.22
+"""Minimum score of the best ring in the coarse step."""
 MIN_PRESENCE = 0.5
+"""Minimum presence of a sector that counts as weld or joint."""
 MIN_SUPPORT = 0.65
+"""Minimum fraction of the sectors that lie on the circle."""
 NEAR_PX = 12.0
+"""Maximum distance from the circle of a sector that lies on it."""
 
 _SECTOR_RAD = (np.arange(SECTORS) + 0.5) * (2 * np.pi / SECTORS)
 _BASIS = np.stack([np.cos(_SECTOR_RAD), np.sin(_SECTOR_RAD), np.ones(SECTORS)], axis=1)
@@ -37,26 +46,27 @@ _BASIS = np.stack([np.cos(_SECTOR_RAD), np.sin(_SECTOR_RAD), np.ones(SECTORS)], 
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """What is known of the weld before looking, in pixels of the image."""
+    """Expected radius of the weld and its tolerance, in pixels of the image."""
 
     radius_px: float = 428.0
     tolerance_px: float = 12.0
 
 
 def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring:
-    """Ring of the weld in `image` (H, W) uint8.
+    """Return the ring of the weld in `image` (height, width) uint8.
 
-    Raises LocateError if no weld is seen, or if its strip is not wholly in view; ModelError if the network fails.
+    Raises LocateError if no weld is found or its strip is not wholly in view, ModelError if the network
+    fails.
     """
     height, width = image.shape
     reach = 2 * (expected.radius_px + expected.tolerance_px)
     if width < reach or height < reach:
         raise LocateError(
-            f"no weld found: {width} x {height} px cannot hold a ring of {expected.radius_px:.0f} px radius"
+            f"no weld found: {width} x {height} px is too small for a radius of {expected.radius_px:.0f} px"
         )
     x, y, ridge = _coarse(image, expected)
     if ridge < MIN_COARSE:
-        raise LocateError(f"no weld found: the best ring scores {ridge:.2f}, needed {MIN_COARSE}")
+        raise LocateError(f"no weld found: the best ring scores {ridge:.2f}, the minimum is {MIN_COARSE}")
     radius = expected.radius_px
     for _ in range(2):
         offset, presence = find_sectors(polar_band(image, x, y, radius))
@@ -67,20 +77,26 @@ def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring
         x, y, radius = x + fit[0], y + fit[1], radius + fit[2]
     if support < MIN_SUPPORT:
         raise LocateError(
-            f"no weld found: only {support:.0%} of the best circle shows weld or joint, needed {MIN_SUPPORT:.0%}"
+            f"no weld found: weld or joint on {support:.0%} of the best circle, minimum is {MIN_SUPPORT:.0%}"
         )
     if abs(radius - expected.radius_px) > expected.tolerance_px:
         raise LocateError(
-            f"no weld found: the best circle has {radius:.0f} px radius, needed {expected.radius_px:.0f} px"
+            f"no weld found: the best radius is {radius:.0f} px, expected {expected.radius_px:.0f} px"
         )
-    ring = Ring(float(x), float(y), float(radius), support, float(np.sqrt(np.mean(residual[on_circle] ** 2))))
+    ring = Ring(
+        float(x),
+        float(y),
+        float(radius),
+        support,
+        residual_px=float(np.sqrt(np.mean(residual[on_circle] ** 2))),
+    )
     if not in_view(ring, width, height):
         raise LocateError(f"the weld at ({x:.0f}, {y:.0f}) px is not wholly in view", out_of_view=True)
     return ring
 
 
 def _coarse(image: Image, expected: Expected) -> tuple[float, float, float]:
-    """Centre x, y in image pixels and the ridge score of the best ring at 1/8 size."""
+    """Return centre x and y in image pixels and the score of the best ring at 1/8 size."""
     half = cv2.resize(image, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     smooth = cv2.blur(half, (9, 9))
     fine = cv2.resize(cv2.absdiff(half, smooth), None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA).astype(
@@ -109,7 +125,7 @@ def _coarse(image: Image, expected: Expected) -> tuple[float, float, float]:
 
 
 def _ring_kernel(radius: float, width: float = 4.0) -> Field:
-    """Ridge along a circle, with negative flanks, sum 0."""
+    """Return a ridge along a circle with negative flanks; its sum is 0."""
     half = int(radius + 3 * width) + 1
     y, x = np.mgrid[-half : half + 1, -half : half + 1]
     away = np.hypot(x, y) - radius
@@ -119,7 +135,7 @@ def _ring_kernel(radius: float, width: float = 4.0) -> Field:
 
 
 def _robust_fit(offset: Array, presence: Array) -> Array:
-    """(dx, dy, dr) of offset = dx cos + dy sin + dr by reweighted least squares with Cauchy weights."""
+    """Return (dx, dy, dr) of offset = dx cos + dy sin + dr, by least squares with Cauchy weights."""
     trust = presence + 1e-3
     weight = trust
     fit = np.zeros(3)

@@ -1,4 +1,4 @@
-"""Is this picture fit to be judged? Exposure and focus on the strip, so that the surroundings do not count."""
+"""Image quality gate: exposure and sharpness, measured on the strip so that the surroundings do not count."""
 
 import cv2
 import numpy as np
@@ -8,11 +8,13 @@ from station.domain import Image, Quality
 from station.settings.model import QualitySettings
 
 DARK_DN = 2
+"""Maximum grey level of a dark pixel."""
 SATURATED_DN = 254
+"""Minimum grey level of a saturated pixel."""
 
 
 def measure(strip: Image) -> Quality:
-    """Image quality of a strip (128, 2688) uint8."""
+    """Return the image quality of a strip (128, 2688) uint8."""
     mean_dn = float(strip.mean())
     laplacian = cv2.Laplacian(strip, cv2.CV_32F)
     return Quality(
@@ -24,7 +26,7 @@ def measure(strip: Image) -> Quality:
 
 
 def gate(quality: Quality, limits: QualitySettings) -> Reason | None:
-    """The first reason why the picture must not be judged, or None."""
+    """Return the first reason why the image must not be judged, or None."""
     if quality.mean_dn < limits.min_mean_dn or quality.dark_share > limits.max_dark_share:
         return Reason.TOO_DARK
     if quality.saturated_share > limits.max_saturated_share:

@@ -1,7 +1,7 @@
-"""Ring to strip and exactly back. One unwrap serves training, replay and the line.
+"""Unwraps the ring into the strip, and converts points between both; the same for training, replay and line.
 
-The strip is (128, 2688) uint8: row 0 outermost, one pixel of the frame a row; column 0 begins at angle 0 (+x) and columns
-run clockwise as seen in the image. With column c and row r (pixel centres):
+The strip is (128, 2688) uint8. Row 0 is outermost, and a row is one frame pixel high. Column 0 begins at
+angle 0 (+x), and columns run clockwise as seen in the image. With column c and row r (pixel centres):
 
     angle  = (c + 0.5) * 360 / 2688          degrees
     radius = ring.radius_px + 63.5 - r       frame pixels
@@ -16,13 +16,16 @@ from station.domain import SEGMENT_PX, SEGMENTS, STRIP_COLUMNS, STRIP_ROWS, Imag
 from station.errors import LocateError
 
 Points = NDArray[np.float64]
+"""K points (K, 2)."""
 
 RAD_PER_COLUMN = 2 * np.pi / STRIP_COLUMNS
+"""Angle of one column in radians."""
 MIDDLE_ROW = (STRIP_ROWS - 1) / 2
+"""Row of the ring."""
 
 
 def strip_to_frame(ring: Ring, points: Points) -> Points:
-    """Strip points (K, 2) as (column, row) to frame points (K, 2) as (x, y)."""
+    """Return the frame points (K, 2) as (x, y) of strip points (K, 2) as (column, row)."""
     angle = (points[:, 0] + 0.5) * RAD_PER_COLUMN
     radius = ring.radius_px + MIDDLE_ROW - points[:, 1]
     return np.stack(
@@ -31,14 +34,17 @@ def strip_to_frame(ring: Ring, points: Points) -> Points:
 
 
 def frame_to_strip(ring: Ring, points: Points) -> Points:
-    """Frame points (K, 2) as (x, y) to strip points (K, 2) as (column, row); columns in [-0.5, 2687.5)."""
+    """Return the strip points (K, 2) as (column, row) of frame points (K, 2) as (x, y).
+
+    Columns lie in [-0.5, 2687.5).
+    """
     dx, dy = points[:, 0] - ring.center_x_px, points[:, 1] - ring.center_y_px
     angle = np.arctan2(dy, dx) % (2 * np.pi)
     return np.stack([angle / RAD_PER_COLUMN - 0.5, ring.radius_px + MIDDLE_ROW - np.hypot(dx, dy)], axis=1)
 
 
 def in_view(ring: Ring, width_px: int, height_px: int) -> bool:
-    """Whether the whole strip lies inside an image of that size."""
+    """Return whether the whole strip lies inside an image of this size."""
     reach = ring.radius_px + STRIP_ROWS / 2
     return (
         reach <= ring.center_x_px <= width_px - 1 - reach
@@ -47,7 +53,7 @@ def in_view(ring: Ring, width_px: int, height_px: int) -> bool:
 
 
 def unwrap(image: Image, ring: Ring) -> Image:
-    """Strip (128, 2688) uint8 of the ring in `image` (H, W) uint8, cubic interpolation.
+    """Return the strip (128, 2688) uint8 of a ring in `image` (height, width), by cubic interpolation.
 
     Raises LocateError if the strip is not wholly inside the image.
     """
@@ -65,5 +71,5 @@ def unwrap(image: Image, ring: Ring) -> Image:
 
 
 def segments(strip: Image) -> Image:
-    """The strip's 21 crops (21, 128, 128) uint8; crop i covers angles [i, i + 1) * 360 / 21 degrees."""
+    """Return the crops (21, 128, 128) uint8 of a strip; crop i covers [i, i + 1) * 360 / 21 degrees."""
     return np.ascontiguousarray(strip.reshape(STRIP_ROWS, SEGMENTS, SEGMENT_PX).transpose(1, 0, 2))

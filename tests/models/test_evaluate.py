@@ -17,7 +17,7 @@ from models.evaluation.evaluate import evaluate_lot
 from models.evaluation.first_day import first_day
 from models.evaluation.report import lines, summary, write_report
 from station.classify.drift import Reference, read_reference
-from station.classify.onnx import LOOK, Classifier, RingNetwork
+from station.classify.onnx import APPEARANCE_SIZE, Classifier, RingNetwork
 from station.inspection.inspector import Inspector
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from station.vision.unwrap import segments
@@ -28,7 +28,11 @@ from tests.parts import FRAMES, label_with, labels
 @pytest.fixture(scope="module")
 def inspector() -> Inspector:
     return Inspector(
-        RingNetwork(RING_MODEL), Classifier(MODEL), WeldSettings(), QualitySettings(), ModelSettings()
+        RingNetwork(RING_MODEL),
+        Classifier(MODEL),
+        weld=WeldSettings(),
+        quality=QualitySettings(),
+        model=ModelSettings(),
     )
 
 
@@ -87,13 +91,13 @@ def test_drifts_begin_with_the_lot_as_it_is(lot: Path, inspector: Inspector, tmp
 
 def test_the_drift_of_one_part_from_its_own_appearance_is_reported(lot: Path, inspector: Inspector) -> None:
     strip = read_lot(lot)[0].strip
-    look = inspector.classifier(segments(strip)).looks.mean(axis=0, dtype=np.float64)
+    look = inspector.classifier(segments(strip)).appearances.mean(axis=0, dtype=np.float64)
     file_hash = inspector.card.file_hash
     entries = json.loads((lot / "labels.json").read_text())["frames"]
     (lot / "labels.json").unlink()
     (lot / "labels.json").write_text(json.dumps({"frames": entries[:1]}))
     reference = Reference(
-        model_hash=file_hash, parts=20, mean=tuple(look.tolist()), spread=(0.1,) * LOOK, limit=0.02
+        model_hash=file_hash, parts=20, mean=tuple(look.tolist()), spread=(0.1,) * APPEARANCE_SIZE, limit=0.02
     )
     steps = drift(lot, inspector.classifier, reference)
     assert all(s.alarms == 0 for s in steps if s.strength == 0)
@@ -111,11 +115,15 @@ def test_the_first_day_writes_a_reference_of_good_parts_only(
         cv2.imwrite(str(tmp_path / f"{i:02d}.png"), made, [cv2.IMWRITE_PNG_COMPRESSION, 1])
     assert main(["first-day", str(tmp_path), "--reference", str(tmp_path / "line.json")]) == 0
     assert f"reference: {tmp_path / 'line.json'}" in capsys.readouterr().out
-    reference = read_reference(tmp_path / "line.json", inspector.card.file_hash, LOOK)
+    reference = read_reference(tmp_path / "line.json", inspector.card.file_hash, APPEARANCE_SIZE)
     assert reference.parts == parts
     settings = ModelSettings(reference_path=tmp_path / "line.json")
     watched = Inspector(
-        RingNetwork(RING_MODEL), inspector.classifier, WeldSettings(), QualitySettings(), settings
+        RingNetwork(RING_MODEL),
+        inspector.classifier,
+        weld=WeldSettings(),
+        quality=QualitySettings(),
+        model=settings,
     )
     assert watched.reference == reference
     (tmp_path / "bad.png").symlink_to(FRAMES / label_with("hole")["frame"])

@@ -55,7 +55,7 @@ def test_the_file_answers_like_the_network(tmp_path: Path) -> None:
     assert np.array([(s.ok, *s.defects.values()) for s in judged.scores]) == pytest.approx(expected, abs=1e-4)
     assert judged.maps == pytest.approx(torch.sigmoid(where).numpy(), abs=1e-4)
     away = (features.numpy() - says.mean) @ says.whitening
-    assert judged.looks == pytest.approx(away, rel=1e-3, abs=1e-3)
+    assert judged.appearances == pytest.approx(away, rel=1e-3, abs=1e-3)
 
 
 def test_the_network_comes_back_from_its_file(tmp_path: Path) -> None:

@@ -133,8 +133,14 @@ def check_shipped_frames(folder: Path) -> None:
     folder.mkdir()
     (folder / "frames").symlink_to(FRAMES)
     (folder / "labels.json").symlink_to(FRAMES / "labels.json")
-    settings = (WeldSettings(), QualitySettings(), ModelSettings())
-    figures = summary(evaluate_lot(folder, Inspector(RingNetwork(RING_MODEL), Classifier(MODEL), *settings)))
+    inspector = Inspector(
+        RingNetwork(RING_MODEL),
+        Classifier(MODEL),
+        weld=WeldSettings(),
+        quality=QualitySettings(),
+        model=ModelSettings(),
+    )
+    figures = summary(evaluate_lot(folder, inspector))
     assert figures["parts"]["right"] == len(labels())
     confusion = figures["segments"]["confusion"]
     assert sum(confusion["crack"].values()) == sum(row["crack"] for row in confusion.values()) == 0

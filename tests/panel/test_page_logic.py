@@ -42,21 +42,21 @@ def row(
     number: int = 1, verdict: str = "NOK", purpose: str = "part", serial: str = "M", at: datetime = NOW
 ) -> Row:
     return Row(
-        number,
-        serial,
-        1,
-        at.isoformat(),
-        verdict,
-        None,
-        0.9,
-        None,
-        "kept",
-        "r.json",
-        "",
-        True,
-        purpose,
-        1,
-        None,
+        inspection_id=number,
+        serial=serial,
+        trigger_id=1,
+        grabbed_at=at.isoformat(),
+        verdict=verdict,
+        reason=None,
+        worst_score=0.9,
+        frame_file=None,
+        frame_state="kept",
+        record_file="r.json",
+        record_sha256="",
+        shown_to_plc=True,
+        purpose=purpose,
+        recipe=1,
+        chain=None,
     )
 
 

@@ -189,7 +189,7 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
         ok_inspection(),
         Part("A", 1, Origin.SIMULATED),
         loaded.provenance,
-        frame.grabbed_at,
+        now=frame.grabbed_at,
     )
     archive.close()
     log_in(session, desk, qtbot, "Quentin", Level.QUALITY)

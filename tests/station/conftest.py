@@ -21,4 +21,6 @@ def ring_network() -> RingNetwork:
 @pytest.fixture(scope="session")
 def inspector(ring_network: RingNetwork, classifier: Classifier) -> Inspector:
     """The shipped model with default limits."""
-    return Inspector(ring_network, classifier, WeldSettings(), QualitySettings(), ModelSettings())
+    return Inspector(
+        ring_network, classifier, weld=WeldSettings(), quality=QualitySettings(), model=ModelSettings()
+    )

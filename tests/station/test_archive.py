@@ -30,7 +30,7 @@ def put(archive: Archive, image: Image | None, inspection: Inspection, trigger_i
     now = datetime.now(UTC)
     frame = None if image is None else Frame(image, now, "cam", Origin.SIMULATED)
     return archive.commit(
-        archive.begin(frame), inspection, Part("S-1", trigger_id, Origin.SIMULATED), provenance(), now
+        archive.begin(frame), inspection, Part("S-1", trigger_id, Origin.SIMULATED), provenance(), now=now
     )
 
 
@@ -56,7 +56,7 @@ def test_numbers_go_on_after_a_restart(archive: Archive, tmp_path: Path) -> None
     again.close()
 
 
-@pytest.mark.parametrize(("suffix", "said"), [("json", "changed"), ("png", "changed")])
+@pytest.mark.parametrize(("suffix", "said"), [("json", "modified"), ("png", "modified")])
 def test_a_changed_file_is_named(suffix: str, said: str, archive: Archive, tmp_path: Path) -> None:
     put(archive, np.zeros((8, 8), np.uint8), ok_inspection())
     (path,) = tmp_path.rglob(f"*.{suffix}")
@@ -117,7 +117,7 @@ def test_a_file_in_the_way_of_the_folder_is_said(tmp_path: Path) -> None:
 
 
 def test_no_archive_is_said(tmp_path: Path) -> None:
-    with pytest.raises(RecordError, match="no records here"):
+    with pytest.raises(RecordError, match="no records found"):
         list(read_records(tmp_path))
 
 

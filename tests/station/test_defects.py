@@ -109,7 +109,7 @@ def test_a_third_kind_is_rejected_under_its_own_name() -> None:
 def test_a_third_kind_inherits_no_minimum_length_of_another() -> None:
     """A crack must not be tolerated because short missing welds are."""
     judged, maps = row(s4=scores(crack=0.9)), area(CRACK, slice(14, 18), slice(10, 14))
-    found = findings(judged, maps, THREE, limits(), RING, 13.0)
+    found = findings(judged, maps, THREE, limits(), ring=RING, um_per_px=13.0)
     for others in ({"missing_weld": 3.0}, {"hole": 3.0}, {"missing_weld": 3.0, "hole": 3.0}):
         assert rejected_kinds(judged, found, limits(others))[4] is CRACK.reason
     assert rejected_kinds(judged, found, limits({"crack": 3.0}))[4] is None
@@ -119,10 +119,12 @@ def test_a_third_kind_over_its_threshold_forbids_to_tolerate_the_likeliest() -> 
     for other in (CRACK, GONE):
         judged = row(s4=scores(hole=0.51, **{other.name: 0.46}))
         low = Thresholds(tuple(Limit(kind, 0.4, 3.0 if kind == HOLE else 0.0) for kind in THREE))
-        found = findings(judged, area(HOLE, slice(14, 18), slice(10, 14)), THREE, low, RING, 13.0)
+        found = findings(
+            judged, area(HOLE, slice(14, 18), slice(10, 14)), THREE, low, ring=RING, um_per_px=13.0
+        )
         assert rejected_kinds(judged, found, low)[4] is HOLE.reason
     alone = row(s4=scores(hole=0.6))
-    found = findings(alone, area(HOLE, slice(14, 18), slice(10, 14)), THREE, low, RING, 13.0)
+    found = findings(alone, area(HOLE, slice(14, 18), slice(10, 14)), THREE, low, ring=RING, um_per_px=13.0)
     assert rejected_kinds(alone, found, low)[4] is None
 
 
@@ -132,7 +134,9 @@ def test_each_kind_is_measured_as_it_says() -> None:
         maps = np.zeros((SEGMENTS, len(THREE), CELLS, CELLS), np.float32)
         for i in range(16):
             maps[4, THREE.index(kind), 8 + i, 8 + i] = 1
-        (found,) = findings(row(s4=scores(**{kind.name: 0.9})), maps, THREE, limits(), RING, 13.0)
+        (found,) = findings(
+            row(s4=scores(**{kind.name: 0.9})), maps, THREE, limits(), ring=RING, um_per_px=13.0
+        )
         cell_mm = 4 * 0.013
         assert found.width_mm == pytest.approx(
             16 * cell_mm if kind.width is Width.EDGE_TO_EDGE else cell_mm, rel=0.01
@@ -142,7 +146,7 @@ def test_each_kind_is_measured_as_it_says() -> None:
 def test_a_kind_that_has_no_map_is_found_by_whole_segments() -> None:
     judged = row(s4=scores(crack=0.9), s5=scores(crack=0.8))
     maps = np.zeros((SEGMENTS, 2, CELLS, CELLS), np.float32)
-    (found,) = findings(judged, maps, (HOLE, GONE), limits({"crack": 5.0}), RING, 13.0)
+    (found,) = findings(judged, maps, (HOLE, GONE), limits({"crack": 5.0}), ring=RING, um_per_px=13.0)
     assert (found.kind, found.width_mm, found.score) == (CRACK.reason, None, pytest.approx(0.9))
     assert rejected_kinds(judged, (found,), limits({"crack": 5.0}))[4:6] == (CRACK.reason,) * 2
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from station.classify.drift import Drift, DriftWatch, Reference, read_reference, write_reference
 from station.errors import ModelError
 
-REFERENCE = Reference("abc", 20, (1.0, -2.0), (0.5, 2.0), 0.7)
+REFERENCE = Reference(model_hash="abc", parts=20, mean=(1.0, -2.0), spread=(0.5, 2.0), limit=0.7)
 
 
 def test_pictures_like_the_reference_do_not_drift() -> None:
@@ -44,7 +44,7 @@ def test_a_reference_comes_back_from_its_file(tmp_path: Path) -> None:
         (None, "abc", 2, "cannot be read"),
         ("{", "abc", 2, "not a reference"),
         ('{"model_hash": 1}', "abc", 2, "not a reference"),
-        ("good", "other", 2, "another classifier"),
+        ("good", "other", 2, "a different classifier"),
         ("good", "abc", 3, "damaged"),
         (
             '{"model_hash": "abc", "parts": 20, "mean": [1, 2], "spread": [1, 0], "limit": 1}',

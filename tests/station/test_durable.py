@@ -107,7 +107,10 @@ def test_every_room_writes_whole_files(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(OSError, match="Input/output"):
         write_csv(tmp_path / "r.csv", [result])
     with pytest.raises(OSError, match="Input/output"):
-        write_reference(tmp_path / "reference.json", Reference("x", 1, (0.0,), (1.0,), 1.0))
+        write_reference(
+            tmp_path / "reference.json",
+            Reference(model_hash="x", parts=1, mean=(0.0,), spread=(1.0,), limit=1.0),
+        )
     with pytest.raises(OSError, match="Input/output"):
         write_summary(tmp_path / "demo.json", [], tmp_path)
     with pytest.raises(SynthError, match=r"manifest\.json: could not be written: Input/output error"):

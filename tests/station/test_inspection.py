@@ -80,7 +80,9 @@ def test_a_failing_model_is_never_ok(
     def fail(_self: Classifier, _crops: Image) -> Judged:
         raise ModelError("out of memory")
 
-    inspector = Inspector(ring_network, classifier, WeldSettings(), QualitySettings(), ModelSettings())
+    inspector = Inspector(
+        ring_network, classifier, weld=WeldSettings(), quality=QualitySettings(), model=ModelSettings()
+    )
     monkeypatch.setattr(Classifier, "__call__", fail)
     judged = inspector.inspect(frames[label_with("OK")["frame"]])
     assert (judged.verdict, judged.reason) == (Verdict.ERROR, Reason.MODEL_FAILED)

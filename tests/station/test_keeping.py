@@ -1,4 +1,4 @@
-"""What is kept, what is let go, and that nothing else goes missing unseen."""
+"""Retention: what is kept and what is deleted, and that nothing else goes missing unnoticed."""
 
 import csv
 import json
@@ -51,7 +51,7 @@ def fill(folder: Path, count: int, days_apart: float = 1.0, image: Image | None 
             inspection,
             Part(f"P{number}", number + 1, Origin.SIMULATED),
             provenance(),
-            when,
+            now=when,
         )
     archive.close()
 
@@ -90,22 +90,26 @@ def exchange(folder: Path) -> None:
     [
         (lambda f: a_file(f, 7, "json").unlink(), "00000007.json", "cannot be read"),
         (lambda f: a_file(f, 7, "png").unlink(), "00000007.json", "its frame"),
-        (lambda f: a_file(f, 7, "png").write_bytes(b"x"), "00000007.json", "was changed"),
+        (lambda f: a_file(f, 7, "png").write_bytes(b"x"), "00000007.json", "was modified"),
         (
             lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id IN (7, 8)"),
             "records 7 to 8",
-            "taken out",
+            "were deleted",
         ),
-        (lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id < 3"), "records 1 to 2", "taken out"),
+        (
+            lambda f: rewrite(f, "DELETE FROM records WHERE inspection_id < 3"),
+            "records 1 to 2",
+            "were deleted",
+        ),
         (exchange, "00000005.json", "does not follow"),
         (
             lambda f: (f / "2026-11-22" / "00000005.json").write_text("{}"),
             "2026-11-22/00000005.json",
-            "not listed",
+            "not in the index",
         ),
     ],
 )
-def test_what_is_missing_altered_or_taken_out_is_named(
+def test_what_is_missing_modified_or_deleted_is_named(
     harm: Callable[[Path], object], place: str, said: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert list(verify(folder)) == []
@@ -167,7 +171,7 @@ def test_a_dry_run_changes_nothing_and_says_the_same(
     settings = folder.parent / "station.toml"
     settings.write_text('[camera]\nkind = "replay"\nfolder = "."\n')
     assert main(["records", "prune", str(folder), "--dry-run", "-c", str(settings)]) == 0
-    assert capsys.readouterr().out.startswith("would go: ")
+    assert capsys.readouterr().out.startswith("would delete ")
 
 
 def test_a_dry_run_counts_nothing_twice(tmp_path: Path) -> None:
@@ -183,7 +187,7 @@ def test_a_clock_that_is_wrong_costs_no_pictures(folder: Path) -> None:
     for when in (datetime(2000, 1, 1, tzinfo=UTC), NOW):
         frame = Frame(np.zeros((16, 16), np.uint8), when, "cam", Origin.SIMULATED)
         archive.commit(
-            archive.begin(frame), nok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), when
+            archive.begin(frame), nok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), now=when
         )
     archive.close()
     prune(folder, KEEP, NOW)
@@ -208,9 +212,9 @@ def test_a_lost_index_is_not_begun_again_over_the_records(folder: Path) -> None:
         Archive(ArchiveSettings(folder=folder, **ROOMY))
 
 
-def test_an_altered_index_is_told(folder: Path) -> None:
+def test_a_modified_index_is_reported(folder: Path) -> None:
     rewrite(folder, "UPDATE records SET verdict = 'OK' WHERE inspection_id = 4")
-    (place,) = [place for place, problem in verify(folder) if "the index was altered" in problem]
+    (place,) = [place for place, problem in verify(folder) if "the index was modified" in problem]
     assert place.endswith("00000004.json")
 
 
@@ -227,7 +231,7 @@ def test_verify_beside_an_engine_raises_no_false_alarm(folder: Path) -> None:
     frame = Frame(np.zeros((16, 16), np.uint8), NOW, "cam", Origin.SIMULATED)
     for _ in range(60):
         archive.commit(
-            archive.begin(frame), ok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), NOW
+            archive.begin(frame), ok_inspection(), Part("S", 1, Origin.SIMULATED), provenance(), now=NOW
         )
     prune(folder, KEEP, NOW)
     done.set()
@@ -244,7 +248,11 @@ def test_the_engine_writes_while_it_is_pruned(tmp_path: Path) -> None:
     thread.start()
     for number in range(60):
         archive.commit(
-            archive.begin(None), ok_inspection(), Part(f"N{number}", 1, Origin.SIMULATED), provenance(), NOW
+            archive.begin(None),
+            ok_inspection(),
+            Part(f"N{number}", 1, Origin.SIMULATED),
+            provenance(),
+            now=NOW,
         )
     thread.join()
     archive.close()
@@ -292,7 +300,7 @@ def test_three_levels_of_room(
     frame = Frame(np.zeros((8, 8), np.uint8), NOW, "cam", Origin.SIMULATED)
     for inspection in (ok_inspection(), nok_inspection()):
         record = archive.commit(
-            archive.begin(frame), inspection, Part("S", 1, Origin.SIMULATED), provenance(), NOW
+            archive.begin(frame), inspection, Part("S", 1, Origin.SIMULATED), provenance(), now=NOW
         )
         assert record.frame_sha256 is not None, "the picture is known by its hash even if it is left out"
     archive.close()
@@ -319,7 +327,7 @@ def test_an_archive_of_the_version_before_is_brought_up_to_date(tmp_path: Path) 
     assert [row.inspection_id for row in find(tmp_path)] == [1, 2, 3, 4, 5]
     assert list(verify(tmp_path)) == []
     rewrite(tmp_path, f"PRAGMA user_version = {VERSION + 1}")
-    with pytest.raises(RecordError, match="index of version 3"):
+    with pytest.raises(RecordError, match="index has version 3"):
         Archive(ArchiveSettings(folder=tmp_path, **ROOMY))
 
 
@@ -331,7 +339,7 @@ def test_a_clock_set_back_mixes_nothing_up(tmp_path: Path) -> None:
             ok_inspection(),
             Part("S", 1, Origin.SIMULATED),
             provenance(),
-            NOW + timedelta(hours=hours),
+            now=NOW + timedelta(hours=hours),
         )
     archive.close()
     assert [row.inspection_id for row in find(tmp_path)] == [1, 2, 3, 4]
@@ -361,7 +369,7 @@ def test_records_are_exported(
         assert all(len(line.split("\x0f")) == 21 for line in values)
         assert values[0].split("\x0f")[0].split("\x14")[2] == "24.10.2026/12:00:00"
     assert main(["records", "export", str(folder), str(target), "--format", form]) == 2
-    assert "exists already" in capsys.readouterr().err
+    assert "already exists" in capsys.readouterr().err
 
 
 def test_crops_are_exported_by_what_was_found(

@@ -80,5 +80,5 @@ def test_other_circles_do_not_draw_the_ring_away(frames: dict[str, Image], inspe
 
 
 def test_an_image_too_small_for_the_ring_is_refused(inspector: Inspector) -> None:
-    with pytest.raises(LocateError, match="cannot hold"):
+    with pytest.raises(LocateError, match="too small for a radius"):
         inspector.locate(np.zeros((480, 640), np.uint8))

@@ -86,6 +86,6 @@ def test_an_archive_in_use_is_refused_until_its_engine_is_gone(tmp_path: Path) -
             Archive(settings)
         assert (
             str(caught.value)
-            == f"{tmp_path}: another engine keeps its records there; stop it or set archive.folder"
+            == f"{tmp_path}: another engine writes its records here; stop it, or set archive.folder"
         )
     Archive(settings).close()

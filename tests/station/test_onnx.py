@@ -20,7 +20,7 @@ def test_one_crop_and_many_give_the_same(classifier: Classifier, rng: np.random.
     many, one = classifier(crops), classifier(crops[4:5])
     assert many.scores[4].nok == pytest.approx(one.scores[0].nok, abs=1e-5)
     assert many.maps[4] == pytest.approx(one.maps[0], abs=1e-4)
-    assert many.looks[4] == pytest.approx(one.looks[0], rel=1e-3, abs=1e-3)
+    assert many.appearances[4] == pytest.approx(one.appearances[0], rel=1e-3, abs=1e-3)
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:

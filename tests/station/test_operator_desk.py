@@ -136,7 +136,11 @@ def desk(tmp_path: Path, people: bytes, frames: dict[str, Image]) -> Iterator[De
     archive = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     frame = Frame(frames[label_with("hole")["frame"]], datetime.now(UTC), "cam", Origin.SIMULATED)
     archive.commit(
-        archive.begin(frame), nok_inspection(), Part("A", 1, Origin.SIMULATED), provenance(), frame.grabbed_at
+        archive.begin(frame),
+        nok_inspection(),
+        Part("A", 1, Origin.SIMULATED),
+        provenance(),
+        now=frame.grabbed_at,
     )
     archive.close()
     (tmp_path / "journal.sqlite").write_bytes(people)

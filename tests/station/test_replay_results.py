@@ -53,7 +53,7 @@ INSPECTED = st.builds(
 )
 NOT_INSPECTED = st.builds(Replayed, name=st.text(), verdict=st.just(Verdict.ERROR), reason=st.text())
 
-HOLE = Finding(Reason.HOLE, 12.5, 17.0, 0.3, 0.75, width_mm=0.25)
+HOLE = Finding(kind=Reason.HOLE, start_deg=12.5, end_deg=17.0, length_mm=0.3, score=0.75, width_mm=0.25)
 JUDGED = Replayed(
     name="a.png",
     verdict=Verdict.NOK,
@@ -197,7 +197,7 @@ def test_the_archive_of_an_image_is_known_whatever_its_name(tmp_path: Path, name
     grabbed_at, made_by = datetime(2026, 11, 22, 12, tzinfo=UTC), provenance()
     frame = Frame(np.asarray(image, np.uint8), grabbed_at, "cam", Origin.SIMULATED)
     part = Part("S1", 1, Origin.SIMULATED)
-    archive.commit(archive.begin(frame), ok_inspection(), part, made_by, grabbed_at)
+    archive.commit(archive.begin(frame), ok_inspection(), part, made_by, now=grabbed_at)
     archive.close()
     (tmp_path / "other.png").write_bytes(next(folder.rglob("*.png")).read_bytes())
     recorded, other = sources([folder, tmp_path / "other.png"])

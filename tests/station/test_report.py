@@ -36,7 +36,7 @@ def folder(tmp_path: Path, frames: dict[str, Image]) -> Path:
         purpose = Purpose.TEST if number == 4 else Purpose.PART
         part = Part(f"<CELL & {number}>", number + 1, Origin.SIMULATED, purpose)
         frame = Frame(image, when, "cam", Origin.SIMULATED) if number == 3 else None
-        record = archive.commit(archive.begin(frame), inspection, part, provenance(), when)
+        record = archive.commit(archive.begin(frame), inspection, part, provenance(), now=when)
         archive.mark_shown(record.inspection_id, number != 1)
     archive.close()
     return tmp_path / "a"
@@ -55,7 +55,7 @@ def test_the_page_says_what_the_records_say_and_needs_nothing_else(folder: Path,
     )
     assert rows["not shown to the PLC"] == "1"
     assert page.count("data:image/jpeg;base64,") == 1
-    assert page.count("no picture") == 1
+    assert page.count("no image") == 1
     assert "Lot &lt;7&gt;" in page
     assert "&lt;CELL &amp; 3&gt;" in page
     assert "<CELL" not in page
@@ -71,7 +71,7 @@ def test_records_with_problems_are_in_the_report_and_in_the_exit_code(folder: Pa
     next(folder.rglob("00000004.png")).write_bytes(b"x")
     assert main(["records", "report", str(folder), str(tmp_path / "r.html")]) == 1
     page = (tmp_path / "r.html").read_text()
-    assert "its frame 2026-11-22/00000004.png was changed" in page
+    assert "its frame 2026-11-22/00000004.png was modified" in page
     assert "cannot be read" in page
 
 
@@ -79,7 +79,7 @@ def test_no_parts_and_no_place_are_one_line(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["records", "report", str(folder), str(tmp_path / "r.html"), "--serial", "nobody"]) == 2
-    assert "no parts among" in capsys.readouterr().err
+    assert "contain no parts" in capsys.readouterr().err
     assert main(["records", "report", str(folder), str(tmp_path / "absent" / "r.html")]) == 2
     assert not (tmp_path / "r.html").exists()
 

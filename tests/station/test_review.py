@@ -52,7 +52,7 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
             inspection,
             Part(f"C{number}", number + 1, Origin.SIMULATED),
             provenance(),
-            frame.grabbed_at,
+            now=frame.grabbed_at,
         )
     archive.close()
     before = {path: path.read_bytes() for path in folder.rglob("*.json")}
@@ -94,7 +94,7 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
     assert {path: path.read_bytes() for path in folder.rglob("*.json")} == before
     problems = list(export(read_records(folder), folder, tmp_path / "out", "reviewed"))
     assert [said for _, said in problems] == [
-        "a defect was missed: the two do not see the same kind in any segment, its crops are left out"
+        "not exported: a defect was missed, but the two reviews name no segment with the same kind"
     ]
     crops = {
         name: sorted(p.name for p in (tmp_path / "out" / name).iterdir())

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from station.__main__ import main
-from station.archive.reader import Wanted, find
+from station.archive.reader import Query, find
 from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import Inspection, Origin
@@ -30,7 +30,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         if number == 7:
             inspection = Inspection.error(Reason.NO_FRAME)
         part = Part(f"LOT{number // 10}-{number:03d}", number + 1, Origin.SIMULATED)
-        archive.commit(archive.begin(None), inspection, part, provenance(), NOON + timedelta(minutes=number))
+        archive.commit(
+            archive.begin(None), inspection, part, provenance(), now=NOON + timedelta(minutes=number)
+        )
     archive.close()
     return made
 
@@ -38,21 +40,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("wanted", "numbers"),
     [
-        (Wanted(), list(range(1, 31))),
-        (Wanted(serial="LOT1-013"), [14]),
-        (Wanted(serial="LOT2*"), list(range(21, 31))),
-        (Wanted(serial="LOT*", limit=3, newest_first=True), [30, 29, 28]),
-        (Wanted(since=NOON + timedelta(minutes=10), until=NOON + timedelta(minutes=12)), [11, 12]),
-        (Wanted(verdict="ERROR"), [8]),
-        (Wanted(reason=str(Reason.NO_FRAME)), [8]),
-        (Wanted(verdict="NOK"), [4, 9, 14, 19, 24, 29]),
-        (Wanted(segment=4, min_score=0.5), [4, 9, 14, 19, 24, 29]),
-        (Wanted(segment=5, min_score=0.5), []),
-        (Wanted(min_score=0.5), [4, 9, 14, 19, 24, 29]),
-        (Wanted(serial="nobody"), []),
+        (Query(), list(range(1, 31))),
+        (Query(serial="LOT1-013"), [14]),
+        (Query(serial="LOT2*"), list(range(21, 31))),
+        (Query(serial="LOT*", limit=3, newest_first=True), [30, 29, 28]),
+        (Query(since=NOON + timedelta(minutes=10), until=NOON + timedelta(minutes=12)), [11, 12]),
+        (Query(verdict="ERROR"), [8]),
+        (Query(reason=str(Reason.NO_FRAME)), [8]),
+        (Query(verdict="NOK"), [4, 9, 14, 19, 24, 29]),
+        (Query(segment=4, min_score=0.5), [4, 9, 14, 19, 24, 29]),
+        (Query(segment=5, min_score=0.5), []),
+        (Query(min_score=0.5), [4, 9, 14, 19, 24, 29]),
+        (Query(serial="nobody"), []),
     ],
 )
-def test_records_are_found(wanted: Wanted, numbers: list[int], folder: Path) -> None:
+def test_records_are_found(wanted: Query, numbers: list[int], folder: Path) -> None:
     assert [row.inspection_id for row in find(folder, wanted)] == numbers
 
 
@@ -79,24 +81,24 @@ def test_people_find_by_options(folder: Path, capsys: pytest.CaptureFixture[str]
     assert [line.split()[0] for line in lines] == ["29", "24"]
     with pytest.raises(SystemExit):
         main(["records", "list", str(folder), "--since", "yesterday"])
-    assert "is no time" in capsys.readouterr().err
+    assert "is not a valid time" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
     "wanted",
     [
-        Wanted(serial="LOT1-013"),
-        Wanted(serial="LOT2*"),
-        Wanted(since=NOON, until=NOON + timedelta(minutes=5)),
-        Wanted(segment=4, min_score=0.9),
-        Wanted(verdict="NOK", limit=100),
+        Query(serial="LOT1-013"),
+        Query(serial="LOT2*"),
+        Query(since=NOON, until=NOON + timedelta(minutes=5)),
+        Query(segment=4, min_score=0.9),
+        Query(verdict="NOK", limit=100),
     ],
 )
-def test_every_search_goes_by_an_index(wanted: Wanted, folder: Path) -> None:
+def test_every_search_goes_by_an_index(wanted: Query, folder: Path) -> None:
     """Never a walk through all records, which a hundred thousand would make slow."""
     seen: list[str] = []
 
-    class Told(sqlite3.Connection):
+    class Watched(sqlite3.Connection):
         def execute(self, sql: str, *values: object) -> sqlite3.Cursor:
             if sql.startswith("SELECT r."):
                 plan = super().execute(f"EXPLAIN QUERY PLAN {sql}", *values).fetchall()  # type: ignore[arg-type]
@@ -105,7 +107,7 @@ def test_every_search_goes_by_an_index(wanted: Wanted, folder: Path) -> None:
 
     real = sqlite3.connect
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sqlite3, "connect", lambda *a, **k: real(*a, **{**k, "factory": Told}))
+        patch.setattr(sqlite3, "connect", lambda *a, **k: real(*a, **{**k, "factory": Watched}))
         find(folder, wanted)
     assert seen
     assert not [step for step in seen if step.startswith("SCAN")], seen
@@ -122,7 +124,7 @@ def test_an_archive_on_a_disk_mounted_read_only_can_be_listed_and_verified(tmp_p
         ok_inspection(),
         Part("CELL-1", 1, Origin.SIMULATED),
         provenance(),
-        datetime.now(UTC),
+        now=datetime.now(UTC),
     )
     archive.close()
     mount = f"mount --bind '{folder}' '{folder}' && mount -o remount,ro,bind '{folder}' && ! touch '{folder}/x' 2>/dev/null"
@@ -134,4 +136,4 @@ def test_an_archive_on_a_disk_mounted_read_only_can_be_listed_and_verified(tmp_p
     )
     assert done.returncode == 0, done.stderr
     assert "CELL-1" in done.stdout
-    assert "1 records, 0 entries of the journal, 0 problems" in done.stdout
+    assert "1 records, 0 journal entries, 0 problems" in done.stdout

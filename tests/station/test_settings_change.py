@@ -117,7 +117,7 @@ def test_a_change_is_noted_used_and_in_the_file(engine: Engine) -> None:
     [
         (SHARPNESS, -1.0, "min_sharpness: Input should be greater than or equal to 0"),
         (("recipes", "1", "quality", "nonsense"), 1.0, "Extra inputs are not permitted"),
-        (("recipes", "7", "quality", "min_sharpness"), 0.02, "there is no recipe 7"),
+        (("recipes", "7", "quality", "min_sharpness"), 0.02, "recipe 7 does not exist"),
         (("recipes", "x", "quality", "min_sharpness"), 0.02, "recipes.x"),
         (("recipes", "1", "model", "path"), 1.0, "cannot be changed at the station"),
         (("recipes", "1"), 1.0, "cannot be changed at the station"),

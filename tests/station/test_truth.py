@@ -58,9 +58,9 @@ def test_an_interval_of_nothing_and_of_twenty_of_twenty() -> None:
         ("t.csv", "part;truth\n", "columns name and verdict"),
         ("t.csv", "name,verdict\nA,good\n", "'A' is 'good'"),
         ("t.csv", "name,verdict\nA,OK\nA,NOK\n", "OK and NOK"),
-        ("t.csv", "name,verdict\n", "holds no parts"),
-        ("t.json", "[1]", "is needed"),
-        ("t.json", "{", "is needed"),
+        ("t.csv", "name,verdict\n", "contains no parts"),
+        ("t.json", "[1]", "columns name and verdict"),
+        ("t.json", "{", "columns name and verdict"),
     ],
 )
 def test_a_truth_that_cannot_be_read_is_refused_in_one_line(
@@ -83,7 +83,7 @@ def test_a_report_shows_escapes_and_false_rejects(tmp_path: Path, frames: dict[s
     ):
         frame = Frame(image, NOON + timedelta(minutes=number), "cam", Origin.SIMULATED)
         part = Part(f"CELL-{number}", number + 1, Origin.SIMULATED)
-        archive.commit(archive.begin(frame), inspection, part, provenance(), frame.grabbed_at)
+        archive.commit(archive.begin(frame), inspection, part, provenance(), now=frame.grabbed_at)
     archive.close()
     with (tmp_path / "truth.csv").open("w", newline="") as file:
         csv.writer(file).writerows(

@@ -95,11 +95,11 @@ SETTINGS = '[camera]\nkind = "pylon"\ndevice_class = "BaslerCamEmu"\nserial = "0
 @pytest.mark.parametrize(
     ("command", "text", "said"),
     [
-        (["engine"], None, "no such settings file"),
+        (["engine"], None, "settings file not found"),
         (["engine"], "[camera]\nkind = 3\n", "camera"),
         (["engine"], SETTINGS + '[model]\npath = "none.onnx"\nring_path = "none.onnx"\n', "none.onnx"),
-        (["panel"], None, "no such settings file"),
-        (["run"], None, "no such settings file"),
+        (["panel"], None, "settings file not found"),
+        (["run"], None, "settings file not found"),
     ],
 )
 def test_mistakes_end_with_one_line_and_code_2(
@@ -120,7 +120,7 @@ def test_mistakes_end_with_one_line_and_code_2(
     ("command", "said"),
     [
         (["station", "replay", "/nowhere/at/all"], "no such file"),
-        (["station", "records", "list", "/nowhere/at/all"], "no records here"),
+        (["station", "records", "list", "/nowhere/at/all"], "no records found"),
         (["models", "train", "/nowhere/at/all", "--out", "/tmp"], "weldgate-synth dataset"),
         (["station", "line", "--port", "1", "--parts", "1"], "no Modbus server"),
     ],

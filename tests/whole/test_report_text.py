@@ -89,7 +89,11 @@ def evaluation(tmp_path_factory: pytest.TempPathFactory) -> Evaluation:
     (lot / "frames").symlink_to(FRAMES)
     (lot / "labels.json").symlink_to(FRAMES / "labels.json")
     inspector = Inspector(
-        RingNetwork(RING_MODEL), Classifier(MODEL), WeldSettings(), QualitySettings(), ModelSettings()
+        RingNetwork(RING_MODEL),
+        Classifier(MODEL),
+        weld=WeldSettings(),
+        quality=QualitySettings(),
+        model=ModelSettings(),
     )
     found = evaluate_lot(lot, inspector)
     error = PartResult(
@@ -154,7 +158,7 @@ def _records(folder: Path, image: Image) -> Path:
             Part(f"{HOSTILE}{number}", number + 1, Origin.SIMULATED),
             Frame(image, NOON, "cam", Origin.SIMULATED),
         )
-        archive.commit(archive.begin(frame), inspection, part, judge, NOON)
+        archive.commit(archive.begin(frame), inspection, part, judge, now=NOON)
     archive.close()
     next(folder.rglob("00000003.png")).write_bytes(b"x")
     return folder

@@ -19,7 +19,7 @@ from station.archive.writer import Archive
 from station.camera.pylon import PylonCamera
 from station.channel.events import Event, PartEvent
 from station.classify.drift import Reference, write_reference
-from station.classify.onnx import LOOK
+from station.classify.onnx import APPEARANCE_SIZE
 from station.defects import Reason
 from station.domain import Frame, Image, Purpose, Verdict
 from station.engine.alarm_log import AlarmLog
@@ -85,7 +85,16 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
     if hasattr(request, "param"):
         reference = tmp_path / "line.json"
         model_hash = hashlib.sha256(MODEL.read_bytes()).hexdigest()
-        write_reference(reference, Reference(model_hash, 20, (9.0,) * LOOK, (1.0,) * LOOK, request.param))
+        write_reference(
+            reference,
+            Reference(
+                model_hash=model_hash,
+                parts=20,
+                mean=(9.0,) * APPEARANCE_SIZE,
+                spread=(1.0,) * APPEARANCE_SIZE,
+                limit=request.param,
+            ),
+        )
     return Settings.model_validate(
         {
             "camera": {

@@ -1,6 +1,6 @@
-"""The installed commands: each finds the rooms of this installation first, whatever else is named like them.
+"""The installed commands; each imports the rooms of this installation, whatever other packages are named.
 
-In a wheel the rooms lie in this folder, where others do not find them; in a checkout nothing is changed.
+In a wheel the rooms are in this folder, where no other project finds them; a checkout is used as it is.
 """
 
 import sys
@@ -33,14 +33,18 @@ def run_demo() -> int:
 
 
 def find_rooms() -> None:
-    """Put the installed rooms first on the path, which spawned processes inherit. Raises ImportError."""
+    """Put the installed rooms first on the path, which spawned processes inherit.
+
+    Raises ImportError if another package with the name of a room is already loaded.
+    """
     if not (HERE / ROOMS[0]).is_dir():
         return
     for room in ROOMS:
         file = getattr(sys.modules.get(room), "__file__", None)
         if file is not None and HERE not in Path(file).resolve().parents:
-            what = f"another package named {room} is already loaded"
-            raise ImportError(f"{what}: {file}. Start weldgate without it.")
+            raise ImportError(
+                f"another package named {room} is already loaded: {file}. Start weldgate without it."
+            )
     sys.path.insert(0, str(HERE))
 
 

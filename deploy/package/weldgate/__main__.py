@@ -1,4 +1,4 @@
-"""`python -m weldgate` is `weldgate`."""
+"""Runs `weldgate` as `python -m weldgate`."""
 
 import sys
 

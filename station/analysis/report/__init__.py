@@ -1,1 +1,1 @@
-"""Reports for people: one HTML file with everything in it."""
+"""Reports for people: one self-contained HTML file, or PDF."""

@@ -1,4 +1,4 @@
-"""Small figures of a report as plain data, which the templates draw as SVG; pure."""
+"""Figures of a report as plain data, which the templates draw as SVG; pure."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,11 +7,12 @@ from math import cos, pi, sin
 from station.domain import SEGMENT_DEG, SEGMENTS
 
 GOOD, BAD, GREY, TEXT = "#2e8b57", "#c0392b", "#b8bcc2", "#23272d"
+"""Colours of the figures."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Label:
-    """A short text at a place in a figure."""
+    """Short text at a position in a figure."""
 
     x_px: float
     y_px: float
@@ -22,7 +23,7 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Sector:
-    """A part of a ring, as the path of its outline."""
+    """Sector of a ring, as the SVG path of its outline."""
 
     path: str
     colour: str
@@ -30,7 +31,7 @@ class Sector:
 
 @dataclass(frozen=True, slots=True)
 class ClockFace:
-    """How often each of the 21 segments was NOK, by where they lie on the weld."""
+    """Number of rejections of each of the 21 segments, arranged by their position on the weld."""
 
     sectors: tuple[Sector, ...]
     labels: tuple[Label, ...]
@@ -38,7 +39,7 @@ class ClockFace:
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """One bar, from the left."""
+    """One horizontal bar."""
 
     y_px: int
     length_px: float
@@ -46,7 +47,7 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Bars:
-    """Horizontal bars with their names and numbers."""
+    """Horizontal bars with their names and counts."""
 
     height_px: int
     bars: tuple[Bar, ...]
@@ -63,24 +64,25 @@ class Dot:
     colour: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Trend:
-    """One value for each part in their order, above an axis from 0 to `top`."""
+    """One value per part in order, above an axis from 0 to `top`."""
 
     name: str
     top: str
+    """Label of the upper end of the axis."""
     limit_y_px: float | None
-    """Height of the dashed line; None: there is no limit."""
+    """Height of the dashed line of the limit; None if there is no limit."""
     dots: tuple[Dot, ...]
     colour: str = TEXT
     axis_colour: str = GREY
 
 
 def clock_face(counts: Sequence[int]) -> ClockFace:
-    """Lay out the counts of 21 segments as sectors: angle 0 at the right, clockwise as in the image."""
+    """Lay out the counts of 21 segments as sectors: angle 0 on the right, clockwise as in the image."""
     most, sectors, labels = max([*counts, 1]), [], []
     for index, count in enumerate(counts):
-        start, end = (pi / 180 * SEGMENT_DEG * (index + k) for k in (0.06, 0.94))
+        start, end = (pi / 180 * SEGMENT_DEG * (index + margin) for margin in (0.06, 0.94))
         inner, outer = 70.0, 70.0 + 60.0 * count / most
         middle = (start + end) / 2
         for low, high, colour in ((64.0, 69.0, GREY), (inner, outer, BAD)):
@@ -93,33 +95,37 @@ def clock_face(counts: Sequence[int]) -> ClockFace:
 
 
 def _at(radius_px: float, angle: float, text: str, colour: str) -> Label:
-    return Label(150 + radius_px * cos(angle), 154 + radius_px * sin(angle), text, colour=colour)
+    x_px, y_px = 150 + radius_px * cos(angle), 154 + radius_px * sin(angle)
+    return Label(x_px=x_px, y_px=y_px, text=text, colour=colour)
 
 
 def _sector(inner: float, outer: float, start: float, end: float) -> str:
-    points = [(outer, start), (outer, end), (inner, end), (inner, start)]
-    a, b, c, d = (f"{150 + r * cos(t):.1f} {150 + r * sin(t):.1f}" for r, t in points)
-    return f"M{a}A{outer:.1f} {outer:.1f} 0 0 1 {b}L{c}A{inner:.1f} {inner:.1f} 0 0 0 {d}Z"
+    corners = [(outer, start), (outer, end), (inner, end), (inner, start)]
+    first, second, third, fourth = (
+        f"{150 + radius * cos(angle):.1f} {150 + radius * sin(angle):.1f}" for radius, angle in corners
+    )
+    arcs = (f"A{outer:.1f} {outer:.1f} 0 0 1 {second}", f"A{inner:.1f} {inner:.1f} 0 0 0 {fourth}")
+    return f"M{first}{arcs[0]}L{third}{arcs[1]}Z"
 
 
 def bars(named: Sequence[tuple[str, int]]) -> Bars:
-    """Lay out counts as horizontal bars, the longest first."""
+    """Lay out counts as horizontal bars, longest first."""
     rows = sorted(named, key=lambda item: -item[1])
     most = max([count for _, count in rows] + [1])
     drawn, labels = [], []
     for i, (name, count) in enumerate(rows):
         y_px, length_px = 26 * i + 4, 300 * count / most
         drawn.append(Bar(y_px, length_px))
-        labels.append(Label(150, y_px + 15, name, "end"))
-        labels.append(Label(168 + length_px, y_px + 15, str(count), "start"))
+        labels.append(Label(x_px=150, y_px=y_px + 15, text=name, anchor="end"))
+        labels.append(Label(x_px=168 + length_px, y_px=y_px + 15, text=str(count), anchor="start"))
     return Bars(26 * len(rows) + 6, tuple(drawn), tuple(labels))
 
 
 def trend(
     values: Sequence[float | None], bad: Sequence[bool], name: str, limit: float | None = None
 ) -> Trend:
-    """Lay out one value for each part in their order; `bad` parts are red, a limit is dashed."""
-    known = [v for v in values if v is not None] + ([] if limit is None else [limit])
+    """Lay out one value per part in order; `bad` parts are red, a limit is a dashed line."""
+    known = [value for value in values if value is not None] + ([] if limit is None else [limit])
     top = max([*known, 1e-9]) * 1.08
     step = 460 / max(len(values) - 1, 1)
     dots = tuple(
@@ -127,9 +133,10 @@ def trend(
         for i, (value, red) in enumerate(zip(values, bad, strict=True))
         if value is not None
     )
-    return Trend(name, f"{top:.3g}", None if limit is None else 130 - 115 * limit / top, dots)
+    limit_y_px = None if limit is None else 130 - 115 * limit / top
+    return Trend(name=name, top=f"{top:.3g}", limit_y_px=limit_y_px, dots=dots)
 
 
 def angle_counts(nok: Sequence[Sequence[bool]]) -> list[int]:
-    """How often each segment was NOK, of parts with 21 decisions each."""
+    """Return the number of rejections of each segment, for parts with 21 decisions each."""
     return [sum(part[i] for part in nok) for i in range(SEGMENTS)]

@@ -1,4 +1,4 @@
-"""What a lot or a shift brought: counts, where and what was found, trends, the NOK parts, who judged."""
+"""Report of many records: counts, findings by kind and angle, trends, NOK parts, and what judged them."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -15,18 +15,19 @@ from station.errors import RecordError
 from station.records import Record
 
 Rows = tuple[tuple[str, str], ...]
-"""Lines of a table: a name and a text each."""
+"""Rows of a table, each with a name and a text."""
 
 DOTS = 2000
-"""Parts in a trend; of more, every second, third and so on."""
+"""Maximum number of parts in a trend; of more parts only every second, third, ... is drawn."""
 GALLERY = 40
-"""NOK parts shown with their weld, the newest."""
+"""Maximum number of NOK parts that are shown with their weld, newest first."""
 TEMPLATE = Path(__file__).with_name("page.html.j2")
+"""Template of the report."""
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """How often each reason was given, and each segment was NOK."""
+    """Counts of the reasons, and of the rejections of each segment."""
 
     reasons: Bars
     angles: ClockFace
@@ -34,37 +35,41 @@ class Found:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReportPage:
-    """What page.html.j2 lays out; rows are pairs of a name and a text."""
+    """Content of page.html.j2."""
 
     title: str
     summary: Rows
     truth: Rows | None
-    """None: the truth is not known."""
+    """Errors against the truth; None if the truth is not known."""
     wrong: tuple[Gallery, ...]
     found: Found | None
     trends: tuple[Trend, ...]
     nok: Gallery | None
     judges: tuple[tuple[str, ...], ...]
-    """Number of parts, software, recipe, model and so on, as the table is headed."""
+    """Rows of the table of provenances, in the order of its heading."""
     problems: Rows
 
 
 def report(
     entries: Sequence[Listed], folder: Path, title: str, truth: Mapping[str, str] | None = None
 ) -> str:
-    """Return the page as HTML text; `truth`: what the serials are.
+    """Return the report as HTML text; `truth` has the true verdicts by serial.
 
-    Raises RecordError if no part is among the entries.
+    Raises RecordError if there is no part among the entries.
     """
-    unreadable = [(e.path, e.problem) for e in entries if e.problem is not None]
-    records = [e.record for e in entries if e.record is not None and e.record.purpose is Purpose.PART]
+    unreadable = [(entry.path, entry.problem) for entry in entries if entry.problem is not None]
+    parts = [
+        (entry, entry.record)
+        for entry in entries
+        if entry.record is not None and entry.record.purpose is Purpose.PART
+    ]
+    records = [record for _, record in parts]
     if not records:
-        raise RecordError(f"{folder}: no parts among the chosen records; choose others")
-    parts = [e for e in entries if e.record is not None and e.record.purpose is Purpose.PART]
+        raise RecordError(f"{folder}: the chosen records contain no parts; choose others")
     found = None if truth is None else _against_truth(records, truth)
     page = ReportPage(
         title=title,
-        summary=_summary(records, sum(e.shown_to_plc is False for e in parts)),
+        summary=_summary(records, sum(entry.shown_to_plc is False for entry, _ in parts)),
         truth=None if found is None else truth_rows(found),
         wrong=() if found is None else _wrong(records, folder, found),
         found=_found(records),
@@ -77,17 +82,19 @@ def report(
 
 
 def truth_rows(found: Errors) -> Rows:
-    """Both kinds of error, with their intervals."""
+    """Return the numbers of escapes, false rejects and unjudged parts, with confidence intervals."""
     return (
-        ("escapes (NOK judged OK)", _share(len(found.escapes), found.nok)),
-        ("false rejects (OK judged NOK)", _share(len(found.false_rejects), found.ok)),
-        ("not judged", _share(len(found.not_judged), found.ok + found.nok)),
+        ("escapes (NOK judged OK)", _fraction(len(found.escapes), found.nok)),
+        ("false rejects (OK judged NOK)", _fraction(len(found.false_rejects), found.ok)),
+        ("not judged", _fraction(len(found.not_judged), found.ok + found.nok)),
     )
 
 
-def _share(count: int, of: int) -> str:
-    low, high = interval(count, of)
-    return f"{count} of {of}, {count / of:.1%} (95 %: {low:.1%} to {high:.1%})" if of else "no such part"
+def _fraction(count: int, total: int) -> str:
+    low, high = interval(count, total)
+    if not total:
+        return "no such part"
+    return f"{count} of {total}, {count / total:.1%} (95 %: {low:.1%} to {high:.1%})"
 
 
 def _against_truth(records: Sequence[Record], truth: Mapping[str, str]) -> Errors:
@@ -95,7 +102,7 @@ def _against_truth(records: Sequence[Record], truth: Mapping[str, str]) -> Error
 
 
 def _by_serial(records: Sequence[Record]) -> dict[str, Record]:
-    return {record.serial: record for record in records}  # of a part that was judged twice, the last
+    return {record.serial: record for record in records}  # for a part that was judged twice, the last record
 
 
 def _wrong(records: Sequence[Record], folder: Path, found: Errors) -> tuple[Gallery, ...]:
@@ -114,7 +121,7 @@ def _summary(records: Sequence[Record], not_shown: int) -> Rows:
         ("from", first),
         ("to", last),
         ("parts", str(len(records))),
-        *((str(v), str(counts[v])) for v in Verdict),
+        *((str(verdict), str(counts[verdict])) for verdict in Verdict),
         ("yield", f"{counts[Verdict.OK] / len(records):.1%}"),
         ("not shown to the PLC", str(not_shown)),
     )
@@ -139,18 +146,18 @@ def _trends(records: Sequence[Record]) -> tuple[Trend, ...]:
     limit = records[-1].provenance.thresholds.lowest
     return (
         trend(
-            [max((s.nok for s in i.scores), default=None) for i in inspections],
+            [max((scores.nok for scores in i.scores), default=None) for i in inspections],
             bad,
-            "worst score of NOK",
+            "highest score of NOK",
             limit,
         ),
         trend(
             [None if i.quality is None else i.quality.mean_dn for i in inspections],
             bad,
-            "brightness, grey levels",
+            "mean brightness (grey levels)",
         ),
         trend([None if i.quality is None else i.quality.sharpness for i in inspections], bad, "sharpness"),
-        trend([i.novelty for i in inspections], bad, "distance to the training images"),
+        trend([i.novelty for i in inspections], bad, "novelty (distance to the training images)"),
     )
 
 
@@ -164,23 +171,23 @@ def _nok(records: Sequence[Record], folder: Path) -> Gallery | None:
 
 
 def _weld(record: Record, folder: Path) -> Weld:
-    said = "; ".join(
-        f"{f.kind} at {f.start_deg:.0f}°, {f.length_mm:.2f} mm long"
-        + ("" if f.area_mm2 is None else f", {f.area_mm2:.2f} mm²")
-        for f in record.inspection.findings
+    result = "; ".join(
+        f"{finding.kind} at {finding.start_deg:.0f}°, {finding.length_mm:.2f} mm long"
+        + ("" if finding.area_mm2 is None else f", {finding.area_mm2:.2f} mm²")
+        for finding in record.inspection.findings
     ) or str(record.verdict)
-    text = f"{record.serial}, {record.grabbed_at:%Y-%m-%d %H:%M:%S}: {said}"
+    text = f"{record.serial}, {record.grabbed_at:%Y-%m-%d %H:%M:%S}: {result}"
     return Weld(str(record.inspection_id), text, _strip(record, folder))
 
 
 def _strip(record: Record, folder: Path) -> StripImage:
-    refused = (
+    rejected = (
         (i * SEGMENT_DEG, (i + 1) * SEGMENT_DEG)
         for i, kind in enumerate(record.inspection.rejected)
         if kind is not None
     )
     return strip(
-        None if record.frame_file is None else folder / record.frame_file, record.inspection.ring, refused
+        None if record.frame_file is None else folder / record.frame_file, record.inspection.ring, rejected
     )
 
 
@@ -189,12 +196,12 @@ def _judges(records: Sequence[Record]) -> tuple[tuple[str, ...], ...]:
     return tuple(
         (
             str(count),
-            p.software,
-            str(p.recipe),
-            p.model_version,
-            p.model_hash[:16],
-            p.limits,
-            str(p.config_crc),
+            judge.software,
+            str(judge.recipe),
+            judge.model_version,
+            judge.model_hash[:16],
+            judge.limits,
+            str(judge.config_crc),
         )
-        for p, count in judges.items()
+        for judge, count in judges.items()
     )

@@ -1,4 +1,4 @@
-"""The page as PDF; the only file that imports WeasyPrint."""
+"""Writes a report as PDF; the only file that imports WeasyPrint."""
 
 from pathlib import Path
 
@@ -6,16 +6,22 @@ from station.errors import RecordError
 
 
 def write_pdf(page: str, target: Path) -> None:
-    """Raises RecordError if WeasyPrint or its system library Pango is not installed, OSError."""
+    """Write an HTML page as PDF.
+
+    Raises RecordError if WeasyPrint or its system library Pango is not installed, OSError if it cannot be
+    written.
+    """
     try:
         from weasyprint import HTML
     except ImportError:
         raise RecordError(
-            "PDF needs the package weasyprint: pip install 'weldgate[pdf]'; or print the HTML page in a browser"
+            "PDF needs the package weasyprint; install it with pip install 'weldgate[pdf]', "
+            "or print the HTML page in a browser"
         ) from None
     except OSError as error:
-        said = str(error).splitlines()[0]
+        reason = str(error).splitlines()[0]
         raise RecordError(
-            f"PDF needs the system library Pango ({said}); install libpango-1.0-0, or print the HTML page in a browser"
+            f"PDF needs the system library Pango ({reason}); install libpango-1.0-0, "
+            "or print the HTML page in a browser"
         ) from None
     HTML(string=page).write_pdf(target)

@@ -1,4 +1,4 @@
-"""A weld unwrapped, with what was found framed, as an image for a page."""
+"""Image of an unwrapped weld for a report, with its findings marked."""
 
 import base64
 from collections.abc import Iterable
@@ -14,11 +14,12 @@ from station.files.image import read_image
 from station.vision.unwrap import unwrap
 
 MARK_BGR = (43, 57, 192)
+"""Colour of the marks."""
 
 
 @dataclass(frozen=True, slots=True)
 class StripImage:
-    """The image of a strip, or why there is none."""
+    """Image of a strip, or the reason why there is none."""
 
     jpeg_base64: str = ""
     missing: str = ""
@@ -26,7 +27,7 @@ class StripImage:
 
 @dataclass(frozen=True, slots=True)
 class Weld:
-    """One weld in a gallery: its name, what is said about it, its strip."""
+    """One weld in a gallery: name, description and strip."""
 
     name: str
     text: str
@@ -42,18 +43,18 @@ class Gallery:
 
 
 def strip(picture: Path | None, ring: Ring | None, spans_deg: Iterable[tuple[float, float]]) -> StripImage:
-    """Unwrap a weld and frame `spans_deg`, pairs of start and end, which may lie beyond 360."""
+    """Return the unwrapped weld with marks at `spans_deg`, pairs of start and end; they may exceed 360."""
     if picture is None or ring is None:
-        return StripImage(missing="no picture")
+        return StripImage(missing="no image")
     try:
         image = cv2.cvtColor(unwrap(read_image(picture), ring), cv2.COLOR_GRAY2BGR)
     except (ImageError, LocateError):
-        return StripImage(missing="its picture is no longer kept, or cannot be read")
+        return StripImage(missing="the image was deleted or cannot be read")
     for start, end in spans_deg:
         left, right = (round(angle / 360 * STRIP_COLUMNS) for angle in (start, end))
         for turn in (0, STRIP_COLUMNS):
             cv2.rectangle(image, (left + 2 - turn, 2), (right - 3 - turn, image.shape[0] - 3), MARK_BGR, 4)
     done, jpeg = cv2.imencode(".jpg", np.asarray(image), [cv2.IMWRITE_JPEG_QUALITY, 80])
     if not done:
-        return StripImage(missing="its picture cannot be shown")
+        return StripImage(missing="the image cannot be shown")
     return StripImage(base64.b64encode(bytes(jpeg)).decode())

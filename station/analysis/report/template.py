@@ -1,6 +1,7 @@
-"""HTML from templates, through Jinja; the only file that imports it.
+"""Fills HTML templates; the only file that imports Jinja.
 
-A template lies next to the code that fills it. All share layout.html.j2, parts.html.j2 and style.css in here.
+A template is next to the code that fills it. All templates share layout.html.j2, parts.html.j2 and style.css
+in this folder.
 """
 
 import re
@@ -12,18 +13,20 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 HERE = Path(__file__).resolve().parent
+"""Folder of the shared templates."""
 UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-"""Characters that a page cannot hold or that change how it reads: controls, direction marks, surrogates."""
+"""Characters that are written as escapes: control characters, direction marks and surrogates, which a page
+cannot contain or which change how it reads."""
 
 
 def render(template: Path, page: object) -> str:
-    """Fill a template, in which `page` is the only name. All that is filled in is escaped."""
+    """Return the HTML text of a template in which `page` is the only name; all values are escaped."""
     return _templates(template.parent).get_template(template.name).render(page=page)
 
 
 @cache
 def _templates(folder: Path) -> "Environment":
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # the window starts without it
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # here so that the window starts faster
 
     return Environment(
         loader=FileSystemLoader([folder, HERE]),
@@ -37,7 +40,7 @@ def _templates(folder: Path) -> "Environment":
 
 
 def _seen(value: object) -> object:
-    """Text with its control characters written out; what a macro made, which is a subclass of str, stays."""
+    """Return text with its unseen characters escaped; the result of a macro (a subclass of str) as it is."""
     if type(value) is not str:
         return value
     return UNSEEN.sub(lambda found: found[0].encode("unicode_escape").decode(), value)

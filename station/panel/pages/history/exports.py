@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from station.analysis.export import export
-from station.archive.reader import Listed, Wanted, read_records
+from station.archive.reader import Listed, Query, read_records
 from station.files.durable import replacing
 from station.journal.reviews import reviews
 from station.panel.widgets.progress import Progress
@@ -45,7 +45,9 @@ def write_reviewed(folder: Path, target: Path, progress: Progress) -> Written | 
     if entries is None:
         return None
     counts, total = iter(range(len(entries))), len(entries)
-    problems = list(export(entries, folder, target, "reviewed", lambda: progress(next(counts, 0), total)))
+    problems = list(
+        export(entries, folder, target, "reviewed", keep_going=lambda: progress(next(counts, 0), total))
+    )
     return Written(target, total - len(problems), len(problems))
 
 
@@ -55,5 +57,5 @@ def _read(folder: Path, numbers: Sequence[int], progress: Progress) -> list[List
     for count, number in enumerate(numbers):
         if not progress(count, len(numbers)):
             return None
-        entries += read_records(folder, Wanted(number=number))
+        entries += read_records(folder, Query(number=number))
     return entries

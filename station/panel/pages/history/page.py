@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
 
-from station.archive.reader import Row, Wanted, find
+from station.archive.reader import Query, Row, find
 from station.channel.requests import Answer, GiveReview
 from station.errors import RecordError
 from station.journal.reviews import Opinion, Review, reviews
@@ -120,7 +120,7 @@ class HistoryPage(Page):
         self.fields.clear()
         self.search()
         if number not in self.film.rows:
-            older = find(self._session.received.folder, Wanted(number=number))
+            older = find(self._session.received.folder, Query(number=number))
             self.film.fill([*older, *self.film.rows.values()], self._session.received.thumbs, self._reviews())
         self.film.setCurrentRow(list(self.film.rows).index(number) if number in self.film.rows else -1)
 

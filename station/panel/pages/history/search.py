@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
 
-from station.archive.reader import Row, Wanted, find
+from station.archive.reader import Query, Row, find
 from station.domain import Purpose, Verdict
 from station.journal.reviews import Review, State, reviews
 
@@ -37,9 +37,9 @@ class Search:
     state: str | None = None
     """State of the review, or `TO_CONFIRM`."""
 
-    def query(self, now: datetime) -> Wanted:
+    def query(self, now: datetime) -> Query:
         """Return the query for the archive's index, which does not have the state of the reviews."""
-        return Wanted(
+        return Query(
             serial=self.serial.strip() or None,
             since=self.since if self.hours is None else now - timedelta(hours=self.hours),
             until=self.until if self.hours is None else None,

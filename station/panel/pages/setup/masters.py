@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout
 
-from station.archive.reader import Row, Wanted, find
+from station.archive.reader import Query, Row, find
 from station.channel.requests import Answer, CheckMaster
 from station.domain import Purpose
 from station.errors import RecordError
@@ -75,7 +75,7 @@ class MastersPage(FollowingPage):
         golden = self._session.received.settings.golden
         try:
             rows = find(
-                self._session.received.folder, Wanted(purpose=Purpose.GOLDEN, newest_first=True, limit=LOG)
+                self._session.received.folder, Query(purpose=Purpose.GOLDEN, newest_first=True, limit=LOG)
             )
         except RecordError:
             rows = []  # no archive yet

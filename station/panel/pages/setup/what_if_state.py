@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
-from station.archive.reader import Wanted, find, read_words
+from station.archive.reader import Query, find, read_words
 from station.channel.requests import MIN_REASON
 from station.panel.widgets.progress import Progress
 from station.records import Record
@@ -76,7 +76,7 @@ def scored_records(
     `model_hash` names the model: scores of others cannot be compared. Return None if cancelled.
     Raises RecordError.
     """
-    rows = find(folder, Wanted(recipe=recipe, newest_first=True, limit=PARTS))
+    rows = find(folder, Query(recipe=recipe, newest_first=True, limit=PARTS))
     records = list[Record]()
     for count, row in enumerate(rows):
         if count % 20 == 0 and not progress(count, len(rows)):

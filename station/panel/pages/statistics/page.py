@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
 
 from station.analysis.report.page import report
 from station.analysis.statistics import Summary, summarise
-from station.archive.reader import Wanted, find, read_records, read_words
+from station.archive.reader import Query, find, read_records, read_words
 from station.archive.schema import NAME as INDEX
 from station.channel.requests import Answer, ResetCounts
 from station.domain import Verdict
@@ -184,7 +184,7 @@ class StatisticsPage(Page):
 
         def work(progress: Progress) -> str | None:
             entries = []
-            for count, entry in enumerate(read_records(folder, Wanted(newest_first=True, limit=limit))):
+            for count, entry in enumerate(read_records(folder, Query(newest_first=True, limit=limit))):
                 if not progress(count, limit):
                     return None
                 entries.append(entry)
@@ -200,7 +200,7 @@ class StatisticsPage(Page):
 
 
 def _records(folder: Path, limit: int, progress: Progress) -> Iterator[Record]:
-    rows = find(folder, Wanted(newest_first=True, limit=limit)) if (folder / INDEX).exists() else []
+    rows = find(folder, Query(newest_first=True, limit=limit)) if (folder / INDEX).exists() else []
     for count, row in enumerate(rows):
         if not progress(count, len(rows)):
             return
