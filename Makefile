@@ -1,57 +1,58 @@
-# Each target makes what it needs first.
+# Each target first makes what it needs.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
-.PHONY: help setup demo test lint bench chaos-plc chaos-records chaos-panel soak-panel screenshots translations docs registers clean
+.PHONY: help setup demo test lint bench chaos-plc chaos-records chaos-panel soak-panel
+.PHONY: screenshots translations docs registers clean
 
-help: ## what can be made
+help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
 
-setup: $(VENV)/.dev ## everything, into .venv
+setup: $(VENV)/.dev ## install everything into .venv
 
-demo: $(VENV)/.demo ## the station against a simulated line, 24 parts
+demo: $(VENV)/.demo ## run the station against a simulated line with 24 parts
 	$(BIN)/weldgate-demo
 
-test: lint ## linters, types, import contracts, tests; names the slowest
+test: lint ## check style, types and import contracts, run all tests and list the slowest
 	$(BIN)/python -m pytest -n 2 --dist loadfile --durations=25
 
-lint: $(VENV)/.dev ## ruff, mypy, import contracts
+lint: $(VENV)/.dev ## check style (ruff), types (mypy) and import contracts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(VENV)/.dev ## times of each step on the emulated camera, of the generator and of the classifier
+bench: $(VENV)/.dev ## measure the times of the station, the PLC link, records, generator and classifier
 	$(BIN)/python -m deploy.bench.station
 	$(BIN)/python -m deploy.bench.plc
 	$(BIN)/python -m deploy.bench.records
 	$(BIN)/python -m deploy.bench.render
 	$(BIN)/python -m models.bench
 
-chaos-plc: $(VENV)/.demo ## 10,000 parts in each PLC mode with both sides misbehaving
+chaos-plc: $(VENV)/.demo ## pass 10,000 parts in each PLC mode while both sides misbehave
 	$(BIN)/python -m deploy.chaos.plc
 
-chaos-records: $(VENV)/.demo ## 300 kills of a writer of records
+chaos-records: $(VENV)/.demo ## kill a writer of records 300 times and check the archive
 	$(BIN)/python -m deploy.chaos.records
 
-chaos-panel: $(VENV)/.demo ## the window killed, restarted and stopped while 600 parts pass
+chaos-panel: $(VENV)/.demo ## kill, restart and suspend the window while 600 parts pass
 	$(BIN)/python -m deploy.chaos.panel
 
-soak-panel: $(VENV)/.demo ## eight hours of events through the window in fast motion
+soak-panel: $(VENV)/.demo ## send eight hours of events to the window in fast motion
 	$(BIN)/python -m deploy.chaos.soak_panel
 
-screenshots: $(VENV)/.dev ## every page of the window in both languages and themes, into screenshots/
+screenshots: $(VENV)/.dev ## take screenshots of all pages of the window, in all languages and themes
 	xvfb-run -a -s "-screen 0 1920x1200x24" $(BIN)/python -m deploy.docs.screenshots
 
-translations: $(VENV)/.dev ## texts of the window into weldgate_de.ts, that into weldgate_de.qm
+translations: $(VENV)/.dev ## collect the texts of the window in weldgate_de.ts, compile weldgate_de.qm
 	$(BIN)/python -m deploy.docs.translations
 
-docs: $(VENV)/.docs ## the pages of deploy/docs, a drawing of the rooms and the API as a site that needs no network, into site/
+docs: $(VENV)/.docs ## build the documentation as a site that needs no network, in site/
 	$(BIN)/python -m deploy.docs.build
 
-registers: $(VENV)/.demo ## the register map and the PLC block in all four forms, into deploy/plc
+registers: $(VENV)/.demo ## write the register map and the PLC block in all forms to deploy/plc
 	$(BIN)/weldgate registers --format md > deploy/plc/register_map.md
 	$(BIN)/weldgate registers --format st > deploy/plc/weldgate.st
 	$(BIN)/weldgate registers --format scl > deploy/plc/weldgate.scl

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# System libraries that the packages need, through apt, only what is missing. Usage: system.sh [test]
-# test: also what PDF reports need, the Modbus peers that the tests talk to, and the compiler that builds them.
+# Installs missing system libraries with apt. Usage: system.sh [test]
+# test: also installs what PDF reports need, the Modbus programs that the tests use, and a compiler for them.
 set -euo pipefail
 
-# library file -> Debian and Ubuntu package: Qt's xcb platform, OpenGL stubs, pylon, and LLVM for Mitsuba
+# library file = package of Debian and Ubuntu; for Qt (xcb platform, OpenGL), pylon and Mitsuba (LLVM)
 needed=(
     libEGL.so.1=libegl1
     libGL.so.1=libgl1
@@ -39,19 +39,24 @@ if [ "${1:-}" = test ]; then
     command -v mbpoll >/dev/null || packages+=(mbpoll)
     command -v gcc >/dev/null || packages+=(gcc libc6-dev)
     [ -e /usr/include/modbus/modbus.h ] || packages+=(libmodbus-dev)
-    [ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] || packages+=(python3-dev)
+    include=$(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')
+    [ -e "$include/Python.h" ] || packages+=(python3-dev)
 fi
 [ ${#packages[@]} -eq 0 ] && exit 0
 
 if ! command -v apt-get >/dev/null; then
-    echo "system.sh: these libraries are missing, and there is no apt-get to install them: ${packages[*]}" >&2
+    echo "system.sh: libraries are missing, but apt-get is not available: install ${packages[*]}" >&2
     exit 1
 fi
 root=()
 if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || { echo "system.sh: run once as root: apt-get install ${packages[*]}" >&2; exit 1; }
+    command -v sudo >/dev/null || {
+        echo "system.sh: libraries are missing; run as root: apt-get install ${packages[*]}" >&2
+        exit 1
+    }
     root=(sudo)
 fi
 echo "installing: ${packages[*]}"
 "${root[@]}" apt-get update -qq
-"${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null
+"${root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null
