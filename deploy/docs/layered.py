@@ -128,7 +128,7 @@ def _crossings(rows: Mapping[int, Sequence[str]], down: Mapping[str, Sequence[st
     for level in range(1, len(rows)):
         place = {name: index for index, name in enumerate(rows[level - 1])}
         ends = [(index, place[to]) for index, name in enumerate(rows[level]) for to in down.get(name, [])]
-        count += sum(a[0] < b[0] and a[1] > b[1] for a in ends for b in ends)
+        count += sum(one[0] < other[0] and one[1] > other[1] for one in ends for other in ends)
     return count
 
 

@@ -1,4 +1,4 @@
-"""Rooms of the code and the imports between them: found with grimp, held against the layer contracts, described.
+"""Rooms of the code and the imports between them: found with grimp, compared with the layer contracts, described.
 
 A room is a folder below one of the packages, or a loose file. The loose files of a package that import no room
 of it are its ground and count as one room.

@@ -60,7 +60,7 @@ def pages(root: Path) -> dict[str, str]:
 
 
 def links(text: str) -> Iterator[Link]:
-    """Yield all links and pictures of a page, without what stands in blocks of code."""
+    """Yield all links and pictures of a page, except in blocks of code."""
     for number, line in _prose(text):
         for found in _LINK.finditer(line):
             yield Link(number, bool(found[1]), found[2], found[3])
@@ -117,7 +117,7 @@ def _turned(root: Path, folder: Path, known: Mapping[str, str], source: str, num
 def _written(
     root: Path, folder: Path, known: Mapping[str, str], way: tuple[str, str, str], found: re.Match[str]
 ) -> str:
-    """Return a link as it stands in the site."""
+    """Return a link as it is written in the site."""
     source, path, anchor = way
     text = found[2].replace("`", "")
     if path in known or f"{path}/README.md" in known:

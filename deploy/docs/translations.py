@@ -32,7 +32,11 @@ def release(ts: Path, qm: Path) -> None:
 def untranslated(ts: Path) -> list[str]:
     """Return the texts that have no translation."""
     messages = ElementTree.parse(ts).getroot().iter("message")
-    return [m.findtext("source") or "" for m in messages if not (m.findtext("translation") or "").strip()]
+    return [
+        message.findtext("source") or ""
+        for message in messages
+        if not (message.findtext("translation") or "").strip()
+    ]
 
 
 def _tool(name: str, *arguments: str) -> None:

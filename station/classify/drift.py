@@ -38,7 +38,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """Distance of the last parts from the reference: 0 is no drift, a value above `limit` raises an alarm."""
+    """Distance of the last parts from the reference: 0 without drift, above `limit` an alarm is raised."""
 
     value: float
     limit: float

@@ -217,7 +217,7 @@ class PanelSettings(Section):
 
 
 class Settings(Section):
-    """All sections of station.toml."""
+    """Complete settings of a station: the sections of station.toml."""
 
     camera: Annotated[AnyCamera, Field(discriminator="kind")]
     weld: WeldSettings = WeldSettings()

@@ -163,6 +163,6 @@ def _yolo_line(number: int, box_px: tuple[int, int, int, int]) -> str:
 
 
 def _polygons(m: Mask) -> list[list[int]]:
-    """Return the outer borders as COCO states them: x1, y1, x2, y2 …"""
+    """Return the outer borders as COCO states them: x1, y1, x2, y2 and so on."""
     borders, _ = cv2.findContours(m.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     return [[int(v) for v in border.ravel()] for border in borders if len(border) >= 3]

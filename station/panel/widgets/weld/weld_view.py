@@ -42,7 +42,7 @@ class WeldView(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def show_weld(self, drawn: Drawn | None, note: str = "", caption: str = "") -> None:
-        """Show an image; `note` is written over it and darkens it, `caption` stands in its corner."""
+        """Show an image; `note` is written over it and darkens it, `caption` is shown in its corner."""
         self.drawn, self.note, self._caption = drawn, note, caption
         self.update()
 
