@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import cycle
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 
 import cv2
 import numpy as np
@@ -23,6 +23,7 @@ from PySide6.QtWidgets import QApplication
 
 from deploy.demo.ports import free_ports
 from deploy.demo.station import running, shipped_parts, station_toml
+from deploy.demo.summary import DemoPart
 from station.channel.requests import HoldService
 from station.journal.accounts import save_user
 from station.journal.review_writer import give
@@ -77,15 +78,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     app = QApplication.instance() or QApplication(sys.argv[:1])  # noqa: F841 - must live
     with (
         tempfile.TemporaryDirectory(prefix="weldgate-") as name,
-        _station(Path(name)) as (settings, pass_parts),
+        _station(Path(name)) as (settings, line),
     ):
         window = open_window(settings)
         window.resize(width, height)
         window.show()
         _save_users(window)
-        line = Thread(target=pass_parts)
         line.start()
-        _wait(lambda: not line.is_alive())
+        _wait(line.passed.is_set)
         _give_reviews(window)
         for theme in ("dark", "light"):
             for language in ("en", "de"):
@@ -100,9 +100,45 @@ def main(argv: Sequence[str] | None = None) -> int:
     return 0
 
 
+class _Line(Thread):
+    """A simulated line: passes parts, then keeps its heartbeat going until it is stopped."""
+
+    def __init__(self, feed: Feed, port: int) -> None:
+        super().__init__(name="line")
+        self._feed, self._port = feed, port
+        self.passed, self.stop = Event(), Event()
+
+    def run(self) -> None:
+        asyncio.run(self._run())
+
+    async def _run(self) -> None:
+        line = SimulatedLine.at("127.0.0.1", self._port, accept_simulated=True)
+        await line.connect()
+        for serial, part, golden in _order():
+            self._feed.show(np.asarray(cv2.imread(str(part.path), cv2.IMREAD_GRAYSCALE), np.uint8))
+            await line.inspect(serial, golden=golden)
+            await line.meanwhile(asyncio.sleep(0.15))
+        self.passed.set()
+        while not self.stop.is_set():
+            await line.meanwhile(asyncio.sleep(0.1))
+        await line.close()
+
+
+def _order() -> list[tuple[str, DemoPart, bool]]:
+    """Return the parts in order with serial, and whether each is a master: both masters, then mostly OK parts."""
+    shipped = shipped_parts()
+    ok = next(part for part in shipped if part.truth == "OK")
+    nok = [part for part in shipped if part.truth != "OK"]
+    parts = [ok] * PARTS + [nok[0]]
+    for place, part in zip(NOK_PLACES, cycle(nok), strict=False):
+        parts[place] = part
+    masters = [("MASTER-OK", ok, True), ("MASTER-NOK", nok[0], True)]
+    return masters + [(f"CELL-{number:05d}", part, False) for number, part in enumerate(parts, 1)]
+
+
 @contextmanager
-def _station(folder: Path) -> Iterator[tuple[Path, Callable[[], None]]]:
-    """Run an engine in its own process; yield its settings file and a function that passes parts."""
+def _station(folder: Path) -> Iterator[tuple[Path, _Line]]:
+    """Run an engine in its own process; yield its settings file and its line, not yet started."""
     feed, ports = Feed(folder / "feed"), free_ports(4)
     settings = folder / "station.toml"
     settings.write_text(
@@ -110,27 +146,14 @@ def _station(folder: Path) -> Iterator[tuple[Path, Callable[[], None]]]:
         + '[golden]\ndue_h = 8\n[golden.masters]\n"MASTER-OK" = "OK"\n"MASTER-NOK" = "NOK"\n'
     )
     command = [sys.executable, "-m", "station", "engine", "-c", str(settings)]
+    line = _Line(feed, ports[0])
     with (folder / "engine.log").open("w") as log, running(command, {**os.environ, **feed.environment}, log):
-
-        async def inspect_parts() -> None:
-            line = SimulatedLine.at("127.0.0.1", ports[0], accept_simulated=True)
-            await line.connect()
-            shipped = shipped_parts()
-            ok = next(part for part in shipped if part.truth == "OK")
-            nok = [part for part in shipped if part.truth != "OK"]
-            order = [ok] * PARTS
-            for place, part in zip(NOK_PLACES, cycle(nok[1:]), strict=False):
-                order[place] = part
-            serials = [f"CELL-{number:05d}" for number in range(1, PARTS + 2)]
-            masters = [("MASTER-OK", ok, True), ("MASTER-NOK", nok[0], True)]
-            parts = [(serial, part, False) for serial, part in zip(serials, [*order, nok[0]], strict=True)]
-            for serial, part, golden in [*masters, *parts]:
-                feed.show(np.asarray(cv2.imread(str(part.path), cv2.IMREAD_GRAYSCALE), np.uint8))
-                await line.inspect(serial, golden=golden)
-                await line.meanwhile(asyncio.sleep(0.15))
-            await line.close()
-
-        yield settings, lambda: asyncio.run(inspect_parts())
+        try:
+            yield settings, line
+        finally:
+            line.stop.set()
+            if line.is_alive():
+                line.join()
 
 
 def _save_users(window: Window) -> None:

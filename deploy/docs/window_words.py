@@ -14,7 +14,7 @@ from typing import get_args, get_type_hints
 
 from station.channel.requests import EndService, LogOut, ReloadSettings, RemoveUser, Request
 from station.defects import Reason
-from station.domain import Origin, Purpose, Verdict
+from station.domain import Origin, Verdict
 from station.engine.rights import check
 from station.errors import LoginError
 from station.journal.journal import Kind
@@ -27,6 +27,7 @@ PARTIES = ("station", "PLC")
 ONE_FOR_EACH_LEVEL: tuple[Request, ...] = (LogOut(), EndService(), ReloadSettings(), RemoveUser(""))
 """Requests that need the levels operator, setter, quality and admin."""
 SPOKEN: Mapping[str, tuple[str, ...]] = {
+    "station.panel.look.purposes": ("PURPOSE_WORDS",),
     "station.panel.session.lamp": ("word", "detail", "WHY_OFFLINE", "LATE"),
     "station.panel.session.pending": ("NO_CONNECTION",),
     "station.panel.widgets.weld.recorded": ("ImageError",),
@@ -54,7 +55,7 @@ _WORD = re.compile(r"[A-Za-z]{2}")
 
 def window_words() -> list[str]:
     """Return all words that the window looks up in the context "data", each once, in a stable order."""
-    words = [str(word) for kind in (Verdict, Reason, Origin, Purpose, Kind, Opinion, State) for word in kind]
+    words = [str(word) for kind in (Verdict, Reason, Origin, Kind, Opinion, State) for word in kind]
     words += [text for explained in TEXTS.values() for text in (explained.cause, explained.action)]
     words += [level.name.lower() for level in Level]
     words += [*PARTIES, *get_args(get_type_hints(LogOut)["why"]), *_refused_levels()]
@@ -80,7 +81,7 @@ def spoken(module: ModuleType, names: tuple[str, ...]) -> list[str]:
         texts = [
             text
             for node in ast.walk(tree)
-            for part in _said_by(node, name)
+            for part in _given_to(node, name)
             for text in _texts(part, vars(module))
             if _WORD.search(text)
         ]
@@ -103,7 +104,7 @@ def _refused_levels() -> list[str]:
     return found
 
 
-def _said_by(node: ast.AST, name: str) -> Iterator[ast.expr]:
+def _given_to(node: ast.AST, name: str) -> Iterator[ast.expr]:
     """Yield the expressions that `node` gives to `name`."""
     match node:
         case ast.Call(func=ast.Name(id=called) | ast.Attribute(attr=called)) if called == name:
@@ -111,6 +112,8 @@ def _said_by(node: ast.AST, name: str) -> Iterator[ast.expr]:
             yield from (keyword.value for keyword in node.keywords)
         case ast.keyword(arg=called) if called == name:
             yield node.value
+        case ast.AnnAssign(target=ast.Name(id=declared), value=ast.expr() as value) if declared == name:
+            yield value
         case ast.Assign(targets=targets):
             for target in targets:
                 if isinstance(target, ast.Name) and target.id == name:

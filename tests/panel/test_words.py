@@ -25,6 +25,7 @@ from station.journal.journal import Kind
 from station.journal.reviews import Opinion, State
 from station.journal.users import Level
 from station.panel.look import words
+from station.panel.look.purposes import PURPOSE_WORDS
 from station.panel.look.theme import THEMES, Colors
 from station.panel.session.lamp import WHY_OFFLINE
 from station.panel.session.pending import NO_CONNECTION
@@ -84,7 +85,16 @@ def test_a_new_kind_of_defect_or_alarm_is_translated_without_another_list(
 
 def test_the_words_of_the_station_are_collected_where_they_are_said() -> None:
     found = window_words()
-    expected = [*Verdict, *Reason, *Origin, *Purpose, *Kind, *Opinion, *State, *WHY_OFFLINE.values()]
+    expected = [
+        *Verdict,
+        *Reason,
+        *Origin,
+        *PURPOSE_WORDS.values(),
+        *Kind,
+        *Opinion,
+        *State,
+        *WHY_OFFLINE.values(),
+    ]
     expected += [level.name.lower() for level in Level]
     expected += [text for explained in TEXTS.values() for text in (explained.cause, explained.action)]
     expected += [
@@ -99,6 +109,7 @@ def test_the_words_of_the_station_are_collected_where_they_are_said() -> None:
     ]
     assert {str(word) for word in expected} <= set(found)
     assert len(found) == len(set(found))
+    assert set(PURPOSE_WORDS) == set(Purpose)
 
 
 def test_every_refusal_for_want_of_a_level_is_collected() -> None:
@@ -110,6 +121,7 @@ SAID = '''
 REASON, OTHER = "it is too late", "never seen"
 LIMIT = 4
 TABLE = {1: "one thing", 2: REASON}
+TYPED: str = "declared"
 def refuse(name):
     raise RefusedError(f"at most {LIMIT} are allowed")
     raise RefusedError(f"{name} is unknown")
@@ -126,6 +138,7 @@ def why(late):
         ("why", ["late again"]),
         ("TABLE", ["one thing", "it is too late"]),
         ("REASON", ["it is too late"]),
+        ("TYPED", ["declared"]),
     ],
 )
 def test_texts_are_found_by_the_names_that_they_go_to(tmp_path: Path, name: str, texts: list[str]) -> None:

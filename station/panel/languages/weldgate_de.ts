@@ -250,14 +250,6 @@
         <translation>Teil</translation>
     </message>
     <message>
-        <source>golden</source>
-        <translation>Meisterteil</translation>
-    </message>
-    <message>
-        <source>test</source>
-        <translation>Test</translation>
-    </message>
-    <message>
         <source>the PLC has not enabled the station</source>
         <translation>die SPS hat die Station nicht freigegeben</translation>
     </message>

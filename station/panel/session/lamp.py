@@ -5,6 +5,7 @@ from enum import StrEnum
 
 from station.channel.events import STATUS_LOST_S, PartEvent, StatusEvent
 from station.domain import Origin, Purpose, Verdict
+from station.panel.look.purposes import PURPOSE_WORDS
 from station.plc.map.alarms import TEXTS, Alarm
 from station.plc.map.registers import Offline, VerdictCode
 
@@ -91,10 +92,8 @@ def _of_part(part: PartEvent, masters_due: bool, strength: float) -> Lamp:
     """Return the lamp for a part that is not too old."""
     record, verdict = part.record, str(part.record.verdict)
     reason = str(record.inspection.reason or "")
-    if record.purpose is Purpose.GOLDEN:
-        return _test(strength, detail="master", more=verdict)
     if record.purpose is not Purpose.PART:
-        return _test(strength, detail="test image", more=verdict)
+        return _test(strength, detail=PURPOSE_WORDS[record.purpose], more=verdict)
     if part.told is VerdictCode.ERROR and record.verdict is not Verdict.ERROR:
         reason = LATE
     if part.told is VerdictCode.ERROR:

@@ -8,8 +8,10 @@ from PySide6.QtGui import QColor, QIcon, QImage, QPainter, QPixmap
 from PySide6.QtWidgets import QAbstractItemView, QListView, QListWidget, QListWidgetItem
 
 from station.archive.reader import Row
+from station.domain import Purpose
 from station.journal.reviews import Review, State
 from station.panel.look import theme
+from station.panel.look.purposes import PURPOSE_WORDS
 from station.panel.look.words import data
 from station.panel.widgets.card import by_finger
 
@@ -50,7 +52,8 @@ class Filmstrip(QListWidget):
             mark = REVIEWED[review.state] if review else ""
             when = datetime.fromisoformat(row.grabbed_at).astimezone()
             reason = data(row.reason) if row.reason else ""
-            purpose = "" if row.purpose == "part" else f" · {data(row.purpose)}"
+            is_part = row.purpose == Purpose.PART
+            purpose = "" if is_part else f" · {data(PURPOSE_WORDS.get(row.purpose, row.purpose))}"
             text = f"{row.inspection_id}{mark}  {row.serial}\n{when:%d.%m. %H:%M:%S}{purpose}\n{reason}"
             pixmap, icon = tile(row.verdict, thumbs.get(row.inspection_id)), QIcon()
             for mode in (QIcon.Mode.Normal, QIcon.Mode.Selected):

@@ -13,6 +13,7 @@ from station.defects import KINDS
 from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Quality, Ring, Verdict
 from station.errors import ImageError, LocateError
 from station.journal.reviews import Marks
+from station.panel.look.purposes import PURPOSE_WORDS
 from station.panel.look.words import data, translate
 from station.panel.widgets.card import Facts, Table, label, titled
 from station.panel.widgets.weld.previews import nok_scores
@@ -166,7 +167,7 @@ class RecordView(QWidget):
             limits="\n".join(_limits(provenance.thresholds)),
             model=f"{provenance.model_version} · {provenance.recipe}",
             hash=f"{provenance.model_hash[:12]} · {provenance.config_crc:04X}",
-            origin=f"{data(record.origin)} · {data(record.purpose)}",
+            origin=f"{data(record.origin)} · {data(PURPOSE_WORDS[record.purpose])}",
         )
 
 

@@ -116,7 +116,7 @@ class LinePage(Page):
         below = QSplitter(Qt.Orientation.Horizontal)
         below.addWidget(titled(translate("line", "registers"), self.registers))
         below.addWidget(titled(translate("line", "edges on the bus, newest first"), self.edges))
-        below.setSizes([370, 710])
+        below.setSizes([420, 660])
         column = QVBoxLayout(self)
         column.addWidget(bits)
         column.addLayout(hand)
