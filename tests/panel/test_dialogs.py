@@ -1,4 +1,4 @@
-"""Where files go: with their ending, never over another one unasked, never for somebody who is gone."""
+"""Where files go: with their ending, never over another one unasked, never for a user who was logged out."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -43,18 +43,18 @@ def answered(
 
 
 @pytest.mark.parametrize("name", ["lot", "lot.csv"])
-def test_a_file_has_its_ending_and_goes_over_another_only_if_that_is_said(
+def test_a_file_gets_its_suffix_and_replaces_another_only_after_a_yes(
     window: Window, desk: Desk, qtbot: QtBot, tmp_path: Path, name: str
 ) -> None:
     log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)
-    wanted = tmp_path / "lot.csv"
-    assert answered(window, tmp_path / name, None) == wanted
-    wanted.write_text("before")
+    target = tmp_path / "lot.csv"
+    assert answered(window, tmp_path / name, None) == target
+    target.write_text("before")
     assert answered(window, tmp_path / name, False) is None
-    assert answered(window, tmp_path / name, True) == wanted
+    assert answered(window, tmp_path / name, True) == target
 
 
-def test_nothing_comes_of_a_dialog_whose_user_is_gone(
+def test_the_answer_of_a_dialog_is_dropped_if_its_user_was_logged_out(
     window: Window, desk: Desk, qtbot: QtBot, tmp_path: Path
 ) -> None:
     log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)

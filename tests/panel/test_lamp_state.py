@@ -40,7 +40,7 @@ def test_words_symbols_and_colours(event: PartEvent | None, word: str, symbol: s
 
 
 @pytest.mark.parametrize(
-    ("said", "word", "detail"),
+    ("event", "word", "detail"),
     [
         (None, "OFFLINE", "no connection to the engine"),
         (status(Offline.PLC_SILENT, at_s=NOW_S), "PLC LOST", TEXTS[Alarm.PLC_SILENT].cause),
@@ -53,12 +53,12 @@ def test_words_symbols_and_colours(event: PartEvent | None, word: str, symbol: s
         (status(Offline.SERVICE, service="Ada", at_s=NOW_S), "SERVICE", "is working on the station"),
     ],
 )
-def test_what_is_lost_is_told_apart_and_no_green_covers_it(
-    said: StatusEvent | None, word: str, detail: str
+def test_each_loss_has_its_own_words_and_no_green_covers_it(
+    event: StatusEvent | None, word: str, detail: str
 ) -> None:
-    shown = lamp(said, None, NOW_S)
+    shown = lamp(event, None, NOW_S)
     assert (shown.word, shown.detail) == (word, detail)
-    assert lamp(said, GOOD, NOW_S).word == word
+    assert lamp(event, GOOD, NOW_S).word == word
 
 
 def test_every_reason_to_be_offline_has_words() -> None:
@@ -70,11 +70,11 @@ def test_no_green_while_the_station_is_off_the_line(offline: Offline) -> None:
     assert lamp(status(offline, at_s=NOW_S), GOOD, NOW_S).tone is not Tone.GOOD
 
 
-def test_no_green_of_the_engine_before() -> None:
+def test_no_green_from_an_earlier_run_of_the_engine() -> None:
     assert lamp(status(at_s=NOW_S + 2, started_s=NOW_S + 1), GOOD, NOW_S + 2).word == "NO VERDICT"
 
 
-def test_no_green_that_the_line_does_not_take() -> None:
+def test_no_green_that_the_plc_does_not_accept() -> None:
     shown = lamp(status(at_s=NOW_S, alarms=(int(Alarm.MASTERS_DUE),)), GOOD, NOW_S)
     assert (shown.word, shown.more) == ("TEST", "OK")
 
@@ -90,8 +90,8 @@ def test_green_is_a_fresh_ok_that_the_plc_reads(
     status_age_s: float, part_age_s: float, told: VerdictCode, offline: Offline, started_s: float
 ) -> None:
     now_s = 2e6
-    said = status(offline, at_s=now_s - status_age_s, started_s=started_s)
-    shown = lamp(said, replace(GOOD, at_s=now_s - part_age_s, told=told), now_s)
+    event = status(offline, at_s=now_s - status_age_s, started_s=started_s)
+    shown = lamp(event, replace(GOOD, at_s=now_s - part_age_s, told=told), now_s)
     if shown.tone is Tone.GOOD:
         assert told is VerdictCode.OK
         assert offline is Offline.NONE

@@ -4,15 +4,18 @@ import subprocess
 import sys
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from station.archive.reader import Row
+from station.archive.schema import open_index
 from station.channel.requests import MIN_REASON, Answer
 from station.journal.reviews import Opinion, Review, State
 from station.journal.users import Level, User
+from station.panel.pages.history.exports import Written, write_reviewed, write_table
 from station.panel.pages.history.search import FOUND, MIN_SCORE, SEARCHED, TO_CONFIRM, Search
 from station.panel.pages.setup.login_view import Notice, login_view, notice
 from station.panel.pages.setup.masters_table import MasterState, master_rows
@@ -71,11 +74,11 @@ def test_what_pages_decide_needs_no_qt() -> None:
     assert done.returncode == 0, done.stderr
 
 
-# a login is what the engine says
+# a login is what the engine reports
 
 
 @given(st.sampled_from(list(Level)), st.sampled_from(list(Level)))
-def test_a_login_may_what_its_level_may_until_the_engine_says_otherwise(level: Level, asked: Level) -> None:
+def test_a_login_has_the_rights_of_its_level_until_the_engine_ends_it(level: Level, asked: Level) -> None:
     state = LoginState()
     assert not state.may(Level.OPERATOR)
     assert not state.begin(Answer(1, "unknown name or wrong PIN"))
@@ -91,7 +94,7 @@ def test_a_login_may_what_its_level_may_until_the_engine_says_otherwise(level: L
     assert not state.is_ended_by("", Answer(4, "a login is needed")), "there is none that could end"
 
 
-def test_a_touch_is_said_once() -> None:
+def test_a_touch_is_reported_once() -> None:
     state = LoginState()
     state.touched()
     assert not state.take_touched(), "nobody is logged in"
@@ -100,7 +103,7 @@ def test_a_touch_is_said_once() -> None:
     assert [state.take_touched(), state.take_touched()] == [True, False]
 
 
-def test_the_login_page_offers_whom_the_station_knows() -> None:
+def test_the_login_page_offers_the_users_of_the_station() -> None:
     assert login_view([], "").first
     known = [User("Ada", Level.ADMIN), User("Bob", Level.OPERATOR)]
     assert login_view(known, "").chosen == "Ada"
@@ -129,7 +132,7 @@ def test_each_request_is_answered_once_by_the_engine_or_given_up(steps: list[str
             then = pending.answered(answer, now)
             assert then is not None
             then(answer)
-            assert pending.answered(answer, now) is None, "an answer that comes twice is heard once"
+            assert pending.answered(answer, now) is None, "an answer that comes twice is used once"
         else:
             now += 1.0
         for number in pending.lost(now):
@@ -166,15 +169,15 @@ def test_a_busy_engine_whose_events_come_may_answer_late_but_not_never(
     assert pending.lost(now_s + more_s) == ([number] if silent_or_mute else [])
 
 
-# what is looked for
+# search
 
 
-def test_a_search_asks_the_archive_for_what_the_fields_say() -> None:
+def test_a_search_queries_the_archive_for_what_the_fields_describe() -> None:
     anything = Search().query(NOW)
     assert (anything.serial, anything.since, anything.until, anything.limit) == (None, None, None, FOUND)
-    wanted = Search(serial=" A* ", hours=8, segment=3, state=str(State.ONE)).query(NOW)
-    assert (wanted.serial, wanted.since, wanted.min_score) == ("A*", NOW - timedelta(hours=8), MIN_SCORE)
-    assert wanted.limit == SEARCHED, "the state of a review is not in the index"
+    query = Search(serial=" A* ", hours=8, segment=3, state=str(State.ONE)).query(NOW)
+    assert (query.serial, query.since, query.min_score) == ("A*", NOW - timedelta(hours=8), MIN_SCORE)
+    assert query.limit == SEARCHED, "the state of a review is not in the index"
     between = Search(since=NOW - timedelta(days=2), until=NOW - timedelta(days=1)).query(NOW)
     assert (between.since, between.until) == (NOW - timedelta(days=2), NOW - timedelta(days=1))
 
@@ -210,7 +213,7 @@ def test_every_part_has_one_state_and_only_nok_parts_wait_to_be_confirmed(
         ("ERROR", 1, None, MasterState.WRONG),
     ],
 )
-def test_how_a_master_stands(
+def test_the_state_of_a_master(
     verdict: str | None, age_h: float, due_h: float | None, state: MasterState
 ) -> None:
     at = NOW - timedelta(hours=age_h)
@@ -233,7 +236,7 @@ LIMITS = st.builds(
 
 
 @given(LIMITS, st.one_of(st.none(), LIMITS), st.text(max_size=8), st.booleans(), st.booleans())
-def test_limits_are_saved_only_by_who_may_after_what_if_with_a_reason(
+def test_limits_are_saved_only_with_the_right_level_after_a_what_if_and_with_a_reason(
     values: Values, asked: Values | None, reason: str, allowed: bool, waiting: bool
 ) -> None:
     state = WhatIfState()
@@ -243,7 +246,7 @@ def test_limits_are_saved_only_by_who_may_after_what_if_with_a_reason(
     assert free is (allowed and not waiting and enough and values == asked and values != USED.rounded())
 
 
-def test_what_the_fields_round_is_no_change() -> None:
+def test_rounding_in_the_fields_is_not_a_change() -> None:
     state = WhatIfState()
     assert not state.changed(USED), "nothing is known to be in use"
     state.in_use = USED
@@ -259,6 +262,22 @@ def test_what_the_fields_round_is_no_change() -> None:
     ("age_s", "shown"),
     [(1, "S1 · 1 s"), (119, "S1 · 119 s"), (121, "S1 · 2 min"), (8000, "S1 · 2 h"), (2e5, "S1 · 2 d")],
 )
-def test_the_foot_of_the_lamp_says_how_old_it_is(age_s: float, shown: str) -> None:
+def test_the_line_below_the_lamp_tells_the_age(age_s: float, shown: str) -> None:
     assert foot(part(ok_inspection(), at_s=100.0), 100.0 + age_s) == shown
     assert foot(None, 5.0) == ""
+
+
+# exports
+
+
+def test_parts_are_written_as_a_table_unless_the_work_is_cancelled(tmp_path: Path) -> None:
+    folder, target = tmp_path / "records", tmp_path / "parts.csv"
+    folder.mkdir()
+    open_index(folder).close()
+    assert write_table(folder, (1, 2), target, lambda done, total: False) is None
+    assert write_reviewed(folder, tmp_path / "reviewed", lambda done, total: True) == Written(
+        tmp_path / "reviewed", 0, 0
+    )
+    assert not target.exists()
+    assert write_table(folder, (), target, lambda done, total: True) == Written(target, 0, 0)
+    assert len(target.read_text().splitlines()) <= 1, "no part, so at most the head"

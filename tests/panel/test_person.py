@@ -171,7 +171,9 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     )
     assert change.reason == "trial of the minimum length"
     again = line.passes(qtbot, 4)
-    assert sum(a.verdict is VerdictCode.OK for a in again) == len(ok) + len(released), "as what if had said"
+    assert sum(a.verdict is VerdictCode.OK for a in again) == len(ok) + len(released), (
+        "as the what-if predicted"
+    )
 
     # log out
     setup.show_tab(setup.login)
@@ -183,7 +185,7 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     )
 
 
-def test_limits_that_the_station_refuses_are_taken_back(
+def test_limits_that_the_station_refuses_are_undone(
     station: tuple[Path, Line], window: Window, qtbot: QtBot
 ) -> None:
     """Its stored frame would be too blurred for them: the station would not come up again."""
@@ -199,17 +201,17 @@ def test_limits_that_the_station_refuses_are_taken_back(
     qtbot.mouseClick(recipe.save, LEFT)
     qtbot.waitUntil(lambda: "Nothing was changed" in recipe.problem.text(), timeout=20_000)
     assert adjustments.read(path) == {}
-    told = entries(window.session.received.folder, (Kind.SETTING,))
-    assert [(e.before, e.after) for e in told] == [("5", "0.01"), ("0.01", "5")]
-    assert told[0].reason.startswith("refused: ")
-    assert told[1].reason == "trial of the sharpness limit"
+    found = entries(window.session.received.folder, (Kind.SETTING,))
+    assert [(e.before, e.after) for e in found] == [("5", "0.01"), ("0.01", "5")]
+    assert found[0].reason.startswith("refused: ")
+    assert found[1].reason == "trial of the sharpness limit"
     assert recipe.fields["min_sharpness"].value == 0.01
     status = window.session.received.status
     assert status is not None
     assert Alarm.SETTINGS_REFUSED not in status.alarms, "the settings file is as good as before"
 
 
-def test_a_record_whose_picture_is_gone_is_shown_as_such(
+def test_a_record_whose_image_was_deleted_is_shown_as_such(
     station: tuple[Path, Line], window: Window, qtbot: QtBot
 ) -> None:
     _, line = station
@@ -227,7 +229,7 @@ def test_a_record_whose_picture_is_gone_is_shown_as_such(
     assert history.record.strip.scores
 
 
-def test_five_wrong_pins_are_said_and_a_level_holds(window: Window, qtbot: QtBot) -> None:
+def test_five_wrong_pins_lock_a_user_and_rights_depend_on_the_level(window: Window, qtbot: QtBot) -> None:
     folder = window.session.received.folder
     save_user(folder, "Ada", "Ada", Level.ADMIN, "1234")
     save_user(folder, "Ada", "Sam", Level.SETTER, "3456")
@@ -243,7 +245,7 @@ def test_five_wrong_pins_are_said_and_a_level_holds(window: Window, qtbot: QtBot
     assert setup.people.save.isEnabled()
 
 
-def test_service_mode_from_the_line_page_is_told_to_the_plc_and_ends_with_the_login(
+def test_service_mode_from_the_line_page_is_reported_to_the_plc_and_ends_with_the_login(
     window: Window, qtbot: QtBot
 ) -> None:
     session = window.session
@@ -354,7 +356,7 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
     ok = next(a.inspection_id for a in answers if a.verdict is VerdictCode.OK)
     page.film.setCurrentRow(list(page.film.rows).index(ok))
     missed = page.reviewing.opinions[Opinion.MISSED]
-    assert not missed.isEnabled(), "nobody has said where"
+    assert not missed.isEnabled(), "no segment is marked yet"
     for _ in range(2):
         qtbot.mouseClick(page.record.strip, LEFT, pos=QPoint(page.record.strip.width() // 2, 20))
     qtbot.mouseClick(missed, LEFT)

@@ -42,7 +42,7 @@ REASON = "trial of the threshold"
 HOLE = ("recipes", "1", "model", "limits", "hole", "threshold")
 
 
-def told(session: Session, *kinds: Kind) -> list[Entry]:
+def noted(session: Session, *kinds: Kind) -> list[Entry]:
     return entries(session.received.folder, kinds)
 
 
@@ -67,7 +67,7 @@ def test_who_logs_in_ends_what_the_one_before_was_doing(window: Window, desk: De
     log_in(session, desk, qtbot, "Bob", Level.OPERATOR)
     assert session.service.held is None
     qtbot.waitUntil(lambda: desk.given[-1] == orders.Service("Ada", over=True), timeout=5000)
-    assert [(e.who, e.kind) for e in told(session, Kind.LOGOUT)] == [("Ada", Kind.LOGOUT)]
+    assert [(e.who, e.kind) for e in noted(session, Kind.LOGOUT)] == [("Ada", Kind.LOGOUT)]
     session.service.hold(HoldService())
     qtbot.waitUntil(lambda: refused == ["a login of the level setter is needed"], timeout=5000)
     assert session.service.held is None
@@ -85,7 +85,7 @@ def test_the_engine_ends_a_login_and_the_window_says_so(window: Window, desk: De
     assert window.user.text() == "Log in"
 
 
-def test_without_an_engine_nobody_logs_in_and_it_is_said(window: Window, qtbot: QtBot) -> None:
+def test_without_an_engine_nobody_logs_in_and_a_message_says_why(window: Window, qtbot: QtBot) -> None:
     window.go(PageKey.SETUP)
     page = window.page
     assert isinstance(page, SetupPage)
@@ -97,7 +97,7 @@ def test_without_an_engine_nobody_logs_in_and_it_is_said(window: Window, qtbot: 
     assert window.session.account.user is None
 
 
-def test_buttons_wait_for_the_engine_and_say_when_it_is_gone(
+def test_buttons_wait_for_the_engine_and_a_message_says_when_it_is_gone(
     window: Window, desk: Desk, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("station.panel.session.pending.SILENCE_S", 0.5)
@@ -124,7 +124,7 @@ def test_a_busy_engine_may_answer_late_and_a_silent_one_is_given_up(
     qtbot: QtBot,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Five wrong PINs under load: an engine of which events were heard was said to be gone."""
+    """Under load, a window once gave up an engine whose events it was receiving."""
     monkeypatch.setattr("station.panel.session.pending.SILENCE_S", 0.5)
     server, answers, asked = RequestServer(settings), list[Answer](), list[tuple[bytes, Message]]()
 
@@ -176,7 +176,7 @@ def test_the_line_page_of_an_absent_engine_claims_nothing(window: Window) -> Non
     assert page.stale.isVisible()
 
 
-def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
+def test_a_what_if_is_valid_for_its_recipe_its_values_and_its_user_only(
     window: Window, desk: Desk, frames: dict[str, Image], qtbot: QtBot
 ) -> None:
     session, path = window.session, desk.path
@@ -195,23 +195,23 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
     log_in(session, desk, qtbot, "Quentin", Level.QUALITY)
     page = recipe_page(window)
 
-    def asked() -> None:
+    def run_what_if() -> None:
         page.fields["limits.hole.threshold"].edit.setText("0.9")
         page.reason.setText(REASON)
         page.ask.click()
         qtbot.waitUntil(page.save.isEnabled, timeout=10_000)
 
-    asked()
+    run_what_if()
     assert page.message.text().startswith("1 parts")
     page.recipe.setCurrentIndex(1)
     page.fields["limits.hole.threshold"].edit.setText("0.9")
     assert not page.save.isEnabled(), "nobody asked what if of recipe 2"
     assert page.message.text() == ""
     page.recipe.setCurrentIndex(0)
-    asked()
+    run_what_if()
     page.fields["limits.hole.threshold"].edit.setText("0.8")
     assert not page.save.isEnabled()
-    asked()
+    run_what_if()
     log_in(session, desk, qtbot, "Quirin", Level.QUALITY)
     assert page.reason.text() == ""
     page.reason.setText(REASON)
@@ -221,26 +221,26 @@ def test_a_what_if_holds_for_its_recipe_its_values_and_its_user_alone(
 def test_a_change_is_waited_for_until_the_station_uses_it_or_says_why_not(
     window: Window, desk: Desk, path: Path, qtbot: QtBot
 ) -> None:
-    session, heard = window.session, list[str]()
-    session.change.used.connect(lambda: heard.append("used"))
-    session.change.refused.connect(heard.append)
+    session, outcomes = window.session, list[str]()
+    session.change.used.connect(lambda: outcomes.append("used"))
+    session.change.refused.connect(outcomes.append)
     log_in(session, desk, qtbot, "Quentin", Level.QUALITY)
     desk.turns = False
     session.change.make([Changed(HOLE, 0.9, 0.46)], REASON)
     assert session.change.waiting
     session.change.make([Changed(HOLE, 0.8, 0.46)], REASON)
     qtbot.wait(300)
-    assert heard == [], "the station has not yet come to it"
+    assert outcomes == [], "the engine has not yet come to it"
     assert adjustments.read(path) == {}
     desk.turns = True
-    qtbot.waitUntil(lambda: heard == ["used"], timeout=10_000)
+    qtbot.waitUntil(lambda: outcomes == ["used"], timeout=10_000)
     assert session.received.settings == load(path)
     assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"threshold": 0.9}}}}}}
     session.change.make([Changed(HOLE, 7.0, 0.9)], REASON)
-    qtbot.waitUntil(lambda: len(heard) == 2, timeout=10_000)
-    assert heard[1] == "limits.hole.threshold: Input should be less than or equal to 1"
+    qtbot.waitUntil(lambda: len(outcomes) == 2, timeout=10_000)
+    assert outcomes[1] == "limits.hole.threshold: Input should be less than or equal to 1"
     assert adjustments.read(path) == {"recipes": {"1": {"model": {"limits": {"hole": {"threshold": 0.9}}}}}}
-    assert [(e.who, e.before, e.after) for e in reversed(told(session, Kind.SETTING))] == [
+    assert [(e.who, e.before, e.after) for e in reversed(noted(session, Kind.SETTING))] == [
         ("Quentin", "0.46", "0.9"),
         ("Quentin", "0.9", "7"),
         ("Quentin", "7", "0.9"),
@@ -260,13 +260,13 @@ def test_the_chosen_alarm_stays_chosen_when_another_comes(window: Window, desk: 
     page.acknowledge.click()
     assert not page.acknowledge.isEnabled()
     qtbot.waitUntil(page.acknowledge.isEnabled, timeout=5000)
-    (seen,) = told(session, Kind.ALARM_SEEN)
-    first = told(session, Kind.ALARM)[-1]
+    (seen,) = noted(session, Kind.ALARM_SEEN)
+    first = noted(session, Kind.ALARM)[-1]
     assert (seen.who, seen.subject) == ("Bob", str(first.number))
     assert "camera" in page.action.text()
 
 
-def test_what_the_engine_refuses_is_said_on_the_page(window: Window, desk: Desk, qtbot: QtBot) -> None:
+def test_what_the_engine_refuses_is_shown_on_the_page(window: Window, desk: Desk, qtbot: QtBot) -> None:
     page = window.page
     assert isinstance(page, LivePage)
 
@@ -290,7 +290,7 @@ def test_an_answer_to_a_page_that_was_made_again_is_dropped(window: Window, desk
     qtbot.wait(200)
 
 
-def test_an_alarm_of_the_run_before_is_over_when_it_is_not_there_any_more(tmp_path: Path) -> None:
+def test_an_alarm_of_the_run_before_is_cleared_when_it_is_no_longer_active(tmp_path: Path) -> None:
     both = {int(Alarm.CAMERA_LOST), int(Alarm.PLC_SILENT)}
     first = AlarmLog(tmp_path)
     first.lasting(both)
@@ -308,7 +308,7 @@ def test_an_alarm_of_the_run_before_is_over_when_it_is_not_there_any_more(tmp_pa
     ]
 
 
-def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(
+def test_a_part_that_was_not_recorded_is_never_shown_with_an_image(
     window: Window, frames: dict[str, Image]
 ) -> None:
     session = window.session
@@ -319,7 +319,7 @@ def test_a_part_that_was_not_recorded_is_never_shown_with_a_picture(
     assert not session.received.thumbs
 
 
-def test_an_unreadable_journal_is_told_and_stops_no_engine(
+def test_an_unreadable_journal_is_logged_and_does_not_stop_the_engine(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "journal.sqlite").write_bytes(b"not a database, " * 100)

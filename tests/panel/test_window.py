@@ -47,7 +47,7 @@ def test_events_reach_the_window(
     event, preview = part(nok_inspection(), 12), make_preview(12, frames[item["frame"]], ring)
     publisher_said = [False]
 
-    def told() -> None:
+    def received() -> None:
         publisher.send(status(alarms=(int(Alarm.PICTURES_DRIFT),)))
         if not publisher_said[0]:
             publisher.send(event)
@@ -60,7 +60,7 @@ def test_events_reach_the_window(
         assert page.weld.drawn is not None
         assert window.session.received.last_nok is not None
 
-    qtbot.waitUntil(told, timeout=5000)
+    qtbot.waitUntil(received, timeout=5000)
     assert window.badge.text() == "SIMULATED CAMERA"
     assert window.buttons[PageKey.ALARMS].text() == "Alarms (1)"
     assert live(window).clock.counts[3] >= 1
@@ -73,7 +73,7 @@ def test_events_reach_the_window(
     assert theme.DARK.bad in colors, "the NOK red is nowhere on the window"
 
 
-def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(
+def test_a_part_without_its_image_is_never_shown_on_the_image_of_another(
     window: Window, frames: dict[str, Image], qtbot: QtBot
 ) -> None:
     session = window.session
@@ -85,18 +85,18 @@ def test_a_part_without_its_picture_never_stands_on_the_picture_of_another(
     assert "no image of this part" in live(window).weld.note
 
 
-def test_the_button_asks_the_engine_for_a_test_picture(
+def test_the_button_asks_the_engine_for_a_test_image(
     window: Window, publisher: Publisher, desk: Desk, qtbot: QtBot
 ) -> None:
-    assert not live(window).test.isEnabled(), "nobody is logged in, no engine was heard yet"
+    assert not live(window).test.isEnabled(), "nobody is logged in, nothing was received from an engine yet"
     log_in(window.session, desk, qtbot, "Bob", Level.OPERATOR)
-    assert not live(window).test.isEnabled(), "no engine was heard yet"
+    assert not live(window).test.isEnabled(), "nothing was received from an engine yet"
 
-    def heard() -> None:
+    def received() -> None:
         publisher.send(status())
         assert live(window).test.isEnabled()
 
-    qtbot.waitUntil(heard, timeout=5000)
+    qtbot.waitUntil(received, timeout=5000)
     assert desk.given == []
     qtbot.mouseClick(live(window).test, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: desk.given == [TestPicture()], timeout=5000)
@@ -119,11 +119,11 @@ def test_a_restarted_engine_needs_no_new_panel(
     for _ in range(2):
         end = Publisher(settings)
 
-        def told(end: Publisher = end) -> None:
+        def received(end: Publisher = end) -> None:
             end.send(status())
             assert live(window).lamp.lamp.word == "NO VERDICT"
 
-        qtbot.waitUntil(told, timeout=5000)
+        qtbot.waitUntil(received, timeout=5000)
         end.close()
         window.session.bridge.status.emit(status(at_s=time.monotonic() - 10))
         assert live(window).lamp.lamp.word == "OFFLINE"
@@ -204,7 +204,7 @@ def test_keys_on_the_screen_write_where_the_cursor_stands(window: Window, qtbot:
     qtbot.waitUntil(lambda: not window.findChildren(Keys), timeout=1000)
 
 
-def test_a_lost_plc_is_told(window: Window) -> None:
+def test_a_lost_plc_is_shown(window: Window) -> None:
     window.session.bridge.status.emit(status(Offline.PLC_SILENT))
     assert live(window).lamp.lamp.word == "PLC LOST"
 
@@ -221,25 +221,25 @@ def test_closing_leaves_no_window_behind(window: Window) -> None:
     assert not [w for w in QApplication.topLevelWidgets() if w.isVisible()]
 
 
-def test_pages_built_anew_leave_none_behind(window: Window, qtbot: QtBot) -> None:
+def test_pages_that_are_built_again_leave_none_behind(window: Window, qtbot: QtBot) -> None:
     def widgets() -> int:
         qtbot.wait(50)
         return len(QApplication.allWidgets())
 
-    def look_at_all() -> None:
+    def open_all_pages() -> None:
         for language in ("de", "en"):
             window.speak(language)
             for info in PAGES:
                 window.go(info.key)
 
-    look_at_all()
+    open_all_pages()
     before = widgets()
     start = time.monotonic()
     for _ in range(3):
-        look_at_all()
+        open_all_pages()
     assert widgets() <= before, f"after {time.monotonic() - start:.1f} s"
 
 
-def test_a_taken_channel_port_is_said(settings: ChannelSettings, publisher: Publisher) -> None:
+def test_a_channel_port_in_use_is_reported(settings: ChannelSettings, publisher: Publisher) -> None:
     with pytest.raises(LineError, match=r"channel\.events_port"):
         Publisher(settings)

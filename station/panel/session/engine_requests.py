@@ -10,7 +10,7 @@ from station.panel.session.bridge import Bridge
 from station.panel.session.pending import NO_CONNECTION, Pending, Then
 
 CHECK_MS = 250
-"""Interval at which requests are given up whose engine is gone."""
+"""Interval at which requests are given up that will not be answered any more."""
 
 
 class EngineRequests(QObject):

@@ -59,7 +59,7 @@ class Lamp:
 
 
 OFFLINE = Lamp(word="OFFLINE", symbol="○", tone=Tone.QUIET, detail="no connection to the engine")
-"""The lamp while nothing is heard of the engine."""
+"""The lamp while the engine sends nothing."""
 
 
 def lamp(status: StatusEvent | None, part: PartEvent | None, now_s: float) -> Lamp:

@@ -1,4 +1,4 @@
-"""Requests that wait for the engine: each is answered once, by the engine or because it is gone; pure."""
+"""Requests that wait for the engine: each gets one answer, if need be that there is no connection; pure."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ from station.channel.requests import Answer
 NO_CONNECTION = "No connection to the engine."
 """Answer to a request that the engine did not answer."""
 SILENCE_S = 5.0
-"""An engine of which nothing at all is heard for so long, neither events nor answers, is gone."""
+"""Time without events and answers after which the engine is considered lost."""
 NO_ANSWER_S = 60.0
-"""Requests are given up once none was answered for so long, although events come."""
+"""Time without any answer after which requests are given up, although events come."""
 NEVER_S = -1e9
 
 Then = Callable[[Answer], None]

@@ -43,7 +43,7 @@ class Received(QObject):
     """Emitted when the settings file or its adjustments were changed."""
 
     def __init__(self, bridge: Bridge, settings: Settings, path: Path) -> None:
-        """Start with settings that were read from the file `path`."""
+        """Keep what `bridge` emits; `settings` were read from the file `path`."""
         super().__init__()
         self._settings, self._path = settings, path
         self._status: StatusEvent | None = None

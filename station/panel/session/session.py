@@ -20,7 +20,7 @@ class Session(QObject):
     """Carries the number of a part that is to be shown on the page History."""
 
     def __init__(self, bridge: Bridge, settings: Settings, path: Path) -> None:
-        """Start with settings that were read from the file `path`."""
+        """Build the four objects on a connection; `settings` were read from the file `path`."""
         super().__init__()
         self.bridge, self._requests = bridge, EngineRequests(bridge)
         self.received = Received(bridge, settings, path)

@@ -36,7 +36,7 @@ class ReviewBar(QWidget):
     def show_review(
         self, row: Row | None, review: Review | None, *, logged_in: bool, marked: bool, waiting: bool
     ) -> None:
-        """Show what was said about a part, and enable the opinions that can be given.
+        """Show the opinions about a part, and enable the opinions that can be given.
 
         `marked`: segments with a missed defect are marked; `waiting`: the engine has not yet answered.
         """
