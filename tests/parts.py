@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from station.classify.thresholds import Limit, Thresholds
-from station.defects import KINDS, Reason
+from station.defects import KINDS, Reason, kind_named
 from station.domain import SEGMENTS, Inspection, Origin, Quality, Ring, SegmentScores, Timing, Verdict
 from station.records import Provenance, Record
 
+HOLE, MISSING_WELD = kind_named("hole"), kind_named("missing_weld")
 FRAMES = Path(__file__).resolve().parent.parent / "deploy" / "frames"
 
 
@@ -31,7 +32,7 @@ def good_scores() -> tuple[SegmentScores, ...]:
 
 def scores_of(ok: float, hole: float, missing_weld: float) -> SegmentScores:
     """Scores of one segment; any further kinds of defect have none."""
-    return SegmentScores(ok, {**dict.fromkeys(KINDS, 0.0), KINDS[0]: hole, KINDS[1]: missing_weld})
+    return SegmentScores(ok, {**dict.fromkeys(KINDS, 0.0), HOLE: hole, MISSING_WELD: missing_weld})
 
 
 def thresholds(
@@ -42,7 +43,7 @@ def thresholds(
     missing_mm: float = 0.0,
 ) -> Thresholds:
     """Limits of holes and missing weld."""
-    return Thresholds((Limit(KINDS[0], hole, hole_mm), Limit(KINDS[1], missing_weld, missing_mm)), segments)
+    return Thresholds((Limit(HOLE, hole, hole_mm), Limit(MISSING_WELD, missing_weld, missing_mm)), segments)
 
 
 def ok_inspection() -> Inspection:

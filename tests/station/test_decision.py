@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from station.classify.decision import findings, mean_of, near_threshold, rejected_kinds, segment_kind
 from station.classify.extent import CELL_PX, CELLS, Map
-from station.defects import KINDS, Reason
+from station.defects import Reason, kind_named
 from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Ring, SegmentScores
 from tests.parts import scores_of, thresholds
 
@@ -15,7 +15,9 @@ OK, HOLE, GONE = scores_of(0.98, 0.01, 0.01), scores_of(0.1, 0.8, 0.1), scores_o
 LIMITS = thresholds(0.5, 0.5)
 RING = Ring(600.0, 600.0, 428.0, 1.0)
 UM = 13.0
-BLIND = np.zeros((SEGMENTS, 2, CELLS, CELLS), np.float32)
+MAPPED = (kind_named("hole"), kind_named("missing_weld"))
+"""Kinds of a network that knows these two, however many the station knows."""
+BLIND = np.zeros((SEGMENTS, len(MAPPED), CELLS, CELLS), np.float32)
 
 
 def row(**bad: SegmentScores) -> tuple[SegmentScores, ...]:
@@ -23,7 +25,7 @@ def row(**bad: SegmentScores) -> tuple[SegmentScores, ...]:
 
 
 def judged(scores: tuple[SegmentScores, ...], maps: Map = BLIND) -> tuple[Finding, ...]:
-    return findings(scores, maps, KINDS, LIMITS, ring=RING, um_per_px=UM)
+    return findings(scores, maps, MAPPED, LIMITS, ring=RING, um_per_px=UM)
 
 
 def test_neighbours_the_map_is_blind_to_merge_over_the_seam() -> None:
@@ -74,7 +76,7 @@ def test_a_map_in_a_segment_that_passed_is_no_finding() -> None:
 
 
 def test_a_segment_not_likelier_ok_than_not_is_nok_whatever_the_thresholds() -> None:
-    assert segment_kind(scores_of(0.3, 0.4, 0.3), thresholds(0.9, 0.9)) == KINDS[0]
+    assert segment_kind(scores_of(0.3, 0.4, 0.3), thresholds(0.9, 0.9)) == MAPPED[0]
 
 
 SCORES = st.lists(
@@ -92,7 +94,7 @@ def test_every_refused_segment_lies_in_a_finding_and_without_one_none_is_refused
     rng = np.random.default_rng(seed)
     maps = np.asarray((rng.random(BLIND.shape) > 0.97) * rng.random(BLIND.shape), np.float32)
     limits = thresholds(limit, limit)
-    found = findings(scores, maps, KINDS, limits, ring=RING, um_per_px=UM)
+    found = findings(scores, maps, MAPPED, limits, ring=RING, um_per_px=UM)
     for index, s in enumerate(scores):
         if segment_kind(s, limits) is not None:
             start, end = index * SEGMENT_DEG, (index + 1) * SEGMENT_DEG
@@ -127,7 +129,7 @@ def test_a_finding_shorter_than_the_least_length_is_told_and_tolerated(
     columns: int, least_mm: float, refused: bool
 ) -> None:
     limits = thresholds(0.5, 0.5, hole_mm=least_mm)
-    found = findings(row(s4=HOLE), one_hole(columns), KINDS, limits, ring=RING, um_per_px=UM)
+    found = findings(row(s4=HOLE), one_hole(columns), MAPPED, limits, ring=RING, um_per_px=UM)
     assert len(found) == 1
     kinds = rejected_kinds(row(s4=HOLE), found, limits)
     assert [i for i, kind in enumerate(kinds) if kind] == ([4] if refused else [])
@@ -135,7 +137,7 @@ def test_a_finding_shorter_than_the_least_length_is_told_and_tolerated(
 
 def test_what_could_not_be_measured_or_stands_beside_something_greater_is_never_tolerated() -> None:
     limits = thresholds(0.5, 0.5, hole_mm=5.0, missing_mm=5.0)
-    blind = findings(row(s4=HOLE, s9=GONE), BLIND, KINDS, limits, ring=RING, um_per_px=UM)
+    blind = findings(row(s4=HOLE, s9=GONE), BLIND, MAPPED, limits, ring=RING, um_per_px=UM)
     assert [i for i, kind in enumerate(rejected_kinds(row(s4=HOLE, s9=GONE), blind, limits)) if kind] == [
         4,
         9,
@@ -143,7 +145,7 @@ def test_what_could_not_be_measured_or_stands_beside_something_greater_is_never_
     maps = one_hole(2)
     maps[4, 0, 2:6, 20:30] = 1
     some = thresholds(0.5, 0.5, hole_mm=0.3)
-    found = findings(row(s4=HOLE), maps, KINDS, some, ring=RING, um_per_px=UM)
+    found = findings(row(s4=HOLE), maps, MAPPED, some, ring=RING, um_per_px=UM)
     assert len(found) == 2
     assert rejected_kinds(row(s4=HOLE), found, some)[4] is Reason.HOLE
 
@@ -151,7 +153,7 @@ def test_what_could_not_be_measured_or_stands_beside_something_greater_is_never_
 def test_a_segment_may_have_a_limit_of_its_own() -> None:
     scores = row(s4=scores_of(0.7, 0.2, 0.1), s5=scores_of(0.7, 0.2, 0.1))
     limits = thresholds(0.5, 0.5, segments=((5, 0.15),))
-    found = findings(scores, BLIND, KINDS, limits, ring=RING, um_per_px=UM)
+    found = findings(scores, BLIND, MAPPED, limits, ring=RING, um_per_px=UM)
     assert [i for i, kind in enumerate(rejected_kinds(scores, found, limits)) if kind] == [4]
 
 
@@ -166,15 +168,16 @@ def test_least_lengths_only_tolerate_and_without_them_every_segment_over_its_lim
     strict, mild = thresholds(limit, limit), thresholds(limit, limit, (), hole_mm, missing_mm)
     over = tuple(None if (kind := segment_kind(s, strict)) is None else kind.reason for s in scores)
     assert (
-        rejected_kinds(scores, findings(scores, maps, KINDS, strict, ring=RING, um_per_px=UM), strict) == over
+        rejected_kinds(scores, findings(scores, maps, MAPPED, strict, ring=RING, um_per_px=UM), strict)
+        == over
     )
-    kinds = rejected_kinds(scores, findings(scores, maps, KINDS, mild, ring=RING, um_per_px=UM), mild)
+    kinds = rejected_kinds(scores, findings(scores, maps, MAPPED, mild, ring=RING, um_per_px=UM), mild)
     assert all(kind in (None, before) for kind, before in zip(kinds, over, strict=True))
     tolerated = [i for i, (kind, before) in enumerate(zip(kinds, over, strict=True)) if before and not kind]
     for i in tolerated:
         assert any(
             f.kind is over[i] and f.area_mm2 is not None
-            for f in findings(scores, maps, KINDS, mild, ring=RING, um_per_px=UM)
+            for f in findings(scores, maps, MAPPED, mild, ring=RING, um_per_px=UM)
         )
 
 
@@ -186,7 +189,7 @@ def test_small_defects_side_by_side_and_long_ones_across_the_seam_are_not_small(
     across = BLIND.copy()
     across[4, 0, 4:28, 14:16] = 1  # 0.1 mm along the weld, 1.2 mm across
     for maps in (row_of_pores, across):
-        found = findings(row(s4=HOLE), maps, KINDS, limits, ring=RING, um_per_px=UM)
+        found = findings(row(s4=HOLE), maps, MAPPED, limits, ring=RING, um_per_px=UM)
         assert all(f.length_mm < 0.5 for f in found)
         assert rejected_kinds(row(s4=HOLE), found, limits)[4] is Reason.HOLE
 
@@ -198,6 +201,6 @@ def test_a_segment_over_both_limits_is_never_tolerated() -> None:
     maps = one_hole(2)
     maps[4, 1] = 1
     assert (
-        rejected_kinds(both, findings(both, maps, KINDS, limits, ring=RING, um_per_px=UM), limits)[4]
+        rejected_kinds(both, findings(both, maps, MAPPED, limits, ring=RING, um_per_px=UM), limits)[4]
         is Reason.HOLE
     )

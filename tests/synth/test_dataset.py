@@ -57,8 +57,9 @@ def test_the_plan_holds_exactly_what_is_ordered(count: int, seed: int) -> None:
         assert {kind: sum(c.kind == kind for c in crops) for kind in CROP_KINDS} == wanted
 
 
-def test_the_default_is_the_papers() -> None:
-    assert quotas(5000) == {"ok": 2500, "hole": 1250, "missing_weld": 1250}
+def test_the_default_is_the_papers_half_ok_and_the_rest_alike() -> None:
+    each = 2500 // len(KINDS)
+    assert quotas(5000) == {OK: 5000 - each * len(KINDS), **{kind.name: each for kind in KINDS}}
 
 
 @given(st.floats(0, 360), st.floats(0.2, 1.2), st.integers(0, 20))
@@ -81,7 +82,7 @@ def test_a_crop_is_used_only_if_a_small_error_of_the_ring_leaves_its_kind(
 
 
 def test_a_ring_has_no_hole_where_no_bead_holds_it() -> None:
-    ordered = {OK: 50, "hole": 200, "missing_weld": 200}
+    ordered = dict.fromkeys(CROP_KINDS, 0) | {OK: 50, "hole": 200, "missing_weld": 200}
     seen = 0
     for shard in plan_rings(5, ordered, WIDE, ALL):
         (part,) = shard.parts
@@ -131,7 +132,7 @@ def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel
         assert height[shown].mean() < -300  # beneath the weld lies the floor
         for line, defect in zip(lines, entry["defects"], strict=True):
             label, x, y, w, h = (float(v) for v in line.split())
-            assert ("hole", "missing_weld")[int(label)] == defect["kind"] == entry["kind"]
+            assert KINDS[int(label)].name == defect["kind"] == entry["kind"]
             exact = decode(frPyObjects(defect["rle"], 128, 128)) > 0
             assert exact.sum() == defect["area_px"]
             assert not (exact & ~shown).any()
