@@ -134,11 +134,7 @@ def _entry(node: ast.stmt, after: ast.stmt | None, in_class: bool) -> Iterator[E
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         yield _function(node, in_class)
     elif isinstance(node, ast.ClassDef):
-        bases = ", ".join(ast.unparse(base) for base in node.bases)
-        inner = tuple(entries(node.body, in_class=True))
-        yield Entry(
-            "class", f"{node.name}({bases})" if bases else node.name, (), ast.get_docstring(node) or "", inner
-        )
+        yield _class(node)
     elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
         options = (f":type: {ast.unparse(node.annotation)}", *_value(node.value))
         yield Entry("attribute" if in_class else "data", node.target.id, options, _following(after))
@@ -147,6 +143,22 @@ def _entry(node: ast.stmt, after: ast.stmt | None, in_class: bool) -> Iterator[E
         for target in node.targets:
             if isinstance(target, ast.Name) and (text or in_class):
                 yield Entry("attribute" if in_class else "data", target.id, _value(node.value), text)
+
+
+def _class(node: ast.ClassDef) -> Entry:
+    """Return a class with the arguments of its constructor, or with its bases if it has none of its own."""
+    made = next(
+        (one for one in node.body if isinstance(one, ast.FunctionDef) and one.name == "__init__"), None
+    )
+    text = ast.get_docstring(node) or ""
+    given = ", ".join(ast.unparse(base) for base in node.bases)
+    if made is not None:
+        given = (
+            _function(made, in_class=True).signature.removeprefix("__init__(").removesuffix(" -> None")[:-1]
+        )
+        text += "\n\n" + (ast.get_docstring(made) or "")
+    inner = tuple(entries(node.body, in_class=True))
+    return Entry("class", f"{node.name}({given})" if given else node.name, (), text.strip(), inner)
 
 
 def _function(node: ast.FunctionDef | ast.AsyncFunctionDef, in_class: bool) -> Entry:

@@ -10,6 +10,8 @@ GAP_X, GAP_Y = 20, 46
 BEND_W = 14
 """Width kept free where an arrow passes a layer."""
 SWEEPS = 24
+SMALLEST_W = 620
+"""A larger drawing is not made smaller than this: on a phone it is moved aside instead."""
 
 Point = tuple[float, float]
 
@@ -65,7 +67,7 @@ def draw(
     return "\n".join(
         [
             f'<svg class="rooms" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" role="img"'
-            f' style="max-width:{width:.0f}px" aria-label="{escape(title)}">',
+            f' style="min-width:{min(width, SMALLEST_W):.0f}px;max-width:{width:.0f}px" aria-label="{escape(title)}">',
             f"<title>{escape(title)}</title>",
             STYLE,
             '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto">'

@@ -139,8 +139,8 @@ def _circles(rooms: Rooms) -> list[str]:
         trail = _way_back(rooms, start, done)
         if trail:
             steps = [rooms.arrows[pair][0] for pair in zip(trail, [*trail[1:], trail[0]], strict=True)]
-            told = "; ".join(f"{file_of(one.importer)} imports {file_of(one.imported)}" for one in steps)
-            lines.append(f"circle of rooms {' -> '.join([*trail, trail[0]])}: {told}")
+            shown = "; ".join(f"{file_of(one.importer)} imports {file_of(one.imported)}" for one in steps)
+            lines.append(f"circle of rooms {' -> '.join([*trail, trail[0]])}: {shown}")
             done.update(trail)
     return lines
 

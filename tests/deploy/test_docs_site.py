@@ -119,6 +119,10 @@ class Part(Base):
     @classmethod
     def of(cls, text: str) -> "Part":
         """Read it."""
+class Made:
+    """Made of parts."""
+    def __init__(self, parts: int = 2) -> None:
+        """Any number."""
 def _no() -> None: ...
 async def run(part: Part, *, fast: bool = True) -> None:
     """Run it."""
@@ -127,8 +131,10 @@ async def run(part: Part, *, fast: bool = True) -> None:
     assert [(entry.directive, entry.signature) for entry in found] == [
         ("data", "LIMIT"),
         ("class", "Part(Base)"),
+        ("class", "Made(parts: int=2)"),
         ("function", "run(part: Part, *, fast: bool=True) -> None"),
     ]
+    assert found[2].text == "Made of parts.\n\nAny number."
     assert [(entry.directive, entry.signature, entry.text) for entry in found[1].inner] == [
         ("attribute", "name", "Its name."),
         ("property", "size", "Size in mm."),
