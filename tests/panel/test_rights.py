@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from station.archive.writer import Archive
 from station.channel.preview import make_preview
-from station.channel.requests import Answer, Changed, HoldService, Message
+from station.channel.requests import Answer, Changed, HoldService, LogIn, Message
 from station.channel.zeromq import Publisher, RequestServer
 from station.domain import Frame, Image, Origin
 from station.engine import orders
@@ -151,6 +151,38 @@ def test_a_busy_engine_may_answer_late_and_a_silent_one_is_given_up(
         qtbot.waitUntil(lambda: [a.refusal for a in answers[1:]] == [NO_CONNECTION], timeout=5000)
     finally:
         server.close()
+
+
+def test_a_request_waits_for_its_connection_while_events_come(
+    window: Window, publisher: Publisher, settings: ChannelSettings, qtbot: QtBot
+) -> None:
+    """Five wrong PINs under load: events had come, but the connection for requests was not there yet."""
+
+    def events_come() -> None:
+        publisher.send(status())
+        assert window.session.received.engine_there
+
+    qtbot.waitUntil(events_come, timeout=10_000)
+    answers, asked = list[Answer](), list[Message]()
+    for name in ("Ada", "Bob"):
+        window.session.account.log_in(name, PIN, answers.append)
+    qtbot.wait(300)
+    assert answers == []
+    server = RequestServer(settings)
+
+    def requests_are_received() -> bool:
+        publisher.send(status())
+        for sender, message in server.received(0.0):
+            asked.append(message)
+            server.answer(sender, Answer(message.request_id, "no"))
+        return len(answers) == 2
+
+    try:
+        qtbot.waitUntil(requests_are_received, timeout=10_000)
+    finally:
+        server.close()
+    assert [message.request.name for message in asked if isinstance(message.request, LogIn)] == ["Ada", "Bob"]
+    assert [answer.refusal for answer in answers] == ["no", "no"]
 
 
 def test_the_bit_set_by_hand_stays_in_sight_in_another_language(

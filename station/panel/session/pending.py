@@ -1,6 +1,6 @@
 """Requests that wait for the engine: each gets one answer, if need be that there is no connection; pure."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from station.channel.requests import Answer
@@ -44,6 +44,10 @@ class Pending:
         """Note that the engine has sent an event."""
         self._heard_s = now_s
 
+    def is_heard(self, now_s: float) -> bool:
+        """Return whether the engine has sent anything lately."""
+        return now_s - self._heard_s <= SILENCE_S
+
     def answered(self, answer: Answer, now_s: float) -> Then | None:
         """Return who waits for this answer, or None if nobody does any more."""
         self._heard_s = self._answered_s = now_s
@@ -55,9 +59,16 @@ class Pending:
         waiting = self._waiting.pop(request_id, None)
         return None if waiting is None else waiting.then
 
-    def lost(self, now_s: float) -> list[int]:
-        """Return the numbers of the requests that will not be answered any more."""
-        return [number for number, waiting in self._waiting.items() if self._is_lost(waiting, now_s)]
+    def lost(self, now_s: float, unsent: Collection[int] = ()) -> list[int]:
+        """Return the numbers of the requests that will not be answered any more.
+
+        Those in `unsent` could not be sent yet; they do not wait longer than `SILENCE_S`.
+        """
+        return [
+            number
+            for number, waiting in self._waiting.items()
+            if self._is_lost(waiting, now_s) or (number in unsent and now_s - waiting.asked_s > SILENCE_S)
+        ]
 
     def _is_lost(self, waiting: _Waiting, now_s: float) -> bool:
         silent_s = now_s - max(waiting.asked_s, self._heard_s)
