@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from station.errors import LineError
 from station.plc.wire.access import WriteRight, admitted
-from station.plc.wire.modbus import MAX_PEERS, ModbusClient, ModbusServer
+from station.plc.wire.modbus import ModbusClient, ModbusServer
+from station.plc.wire.peers import MAX_PEERS
 
 ALLOW = (ip_network("192.168.7.0/24"), ip_network("10.0.0.5"), ip_network("fd00::/8"))
 

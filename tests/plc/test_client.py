@@ -17,7 +17,7 @@ from station.plc.port import Result, Trigger
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
 from station.plc.wire.modbus import ModbusServer
-from station.plc.wire.windows import SHOWS, ClientWire
+from station.plc.wire.windows import RESULT_BITS, ClientWire
 from station.settings.model import PlcSettings
 
 
@@ -227,9 +227,9 @@ def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
             assert await plc.read(STATUS_START, STATUS_WORDS) == after
             for status in seen:
                 assert status in (before[0], after[0]) or (
-                    status & before[0] & after[0] == status and not status & SHOWS
+                    status & before[0] & after[0] == status and not status & RESULT_BITS
                 )
-            assert before[0] & SHOWS == 0 or (before[0] & after[0] & ~SHOWS & 0xFFFF) in seen
+            assert before[0] & RESULT_BITS == 0 or (before[0] & after[0] & ~RESULT_BITS & 0xFFFF) in seen
             before = after
         await wire.close()
         await plc.stop()

@@ -71,7 +71,7 @@ def test_certificates_that_cannot_be_used_are_said_before_anything_runs(folder: 
     wrong = TlsSettings(
         certificate_path=folder / "server.pem", key_path=folder / "client.key", ca_path=folder / "ca.pem"
     )
-    with pytest.raises(SettingsError, match="no usable certificates"):
+    with pytest.raises(SettingsError, match="certificate, key or authority cannot be used"):
         make_line(PlcSettings(tls=wrong))
 
 

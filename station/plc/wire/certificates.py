@@ -1,6 +1,7 @@
-"""Certificates for trials of Modbus/TCP Security: an authority, a server, a client; the only file that imports cryptography.
+"""Certificates for trials of Modbus/TCP Security; the only file that imports cryptography.
 
-A plant has its own authority and uses that. The client's certificate carries its role (Modbus/TCP Security, 8.4).
+An authority signs a certificate for the server and one for the client; a plant uses its own authority.
+The client's certificate carries its role (Modbus/TCP Security, 8.4).
 """
 
 import os
@@ -11,11 +12,16 @@ from pathlib import Path
 from station.errors import SettingsError
 
 ROLE_OID = "1.3.6.1.4.1.50316.802.1"
+"""Object identifier of the role extension."""
 ROLE = "Operator"
+"""Role in the client's certificate."""
 
 
 def make_certificates(folder: Path, host: str, days: int) -> list[Path]:
-    """ca.pem, server.pem, server.key, client.pem, client.key; nothing is written over. Raises SettingsError."""
+    """Write certificates and keys as PEM files and return their paths. Raises SettingsError.
+
+    `host`: name or address of the server; `days`: validity. Existing files are never overwritten.
+    """
     try:
         from cryptography import x509
         from cryptography.hazmat.primitives import hashes, serialization
@@ -23,14 +29,14 @@ def make_certificates(folder: Path, host: str, days: int) -> list[Path]:
         from cryptography.x509.oid import NameOID
     except ImportError:
         raise SettingsError(
-            "certificates need the package cryptography: pip install 'weldgate[tls]'"
+            "making certificates needs the package cryptography: pip install 'weldgate[tls]'"
         ) from None
     if not 1 <= days <= 3650:
-        raise SettingsError(f"--days is {days}; 1 to 3650 is allowed")
+        raise SettingsError(f"--days is {days}; use 1 to 3650")
     paths = [folder / name for name in ("ca.pem", "server.pem", "server.key", "client.pem", "client.key")]
-    there = [path for path in paths if path.exists()]
-    if there:
-        raise SettingsError(f"{there[0]}: exists already; name another folder")
+    existing = [path for path in paths if path.exists()]
+    if existing:
+        raise SettingsError(f"{existing[0]}: file exists already; name another folder")
     folder.mkdir(parents=True, exist_ok=True)
     now = datetime.now(UTC)
 

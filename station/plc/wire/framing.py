@@ -1,17 +1,22 @@
-"""Requests out of a stream of bytes, after the Modbus messaging guide for TCP/IP, section 3.1.3 (MBAP header); pure."""
+"""Splits bytes into Modbus requests: messaging guide for TCP/IP, section 3.1.3 (MBAP header); pure."""
 
 HEADER = 6
-"""Transaction, protocol and length, two bytes each; unit, function and data follow."""
+"""Bytes of transaction, protocol and length (two each); unit, function and data follow."""
 MAX_LENGTH = 254
-"""Of what follows the length field: unit, function, 252 bytes of data."""
+"""Largest value of the length field: unit, function and 252 bytes of data."""
 FUNCTIONS = frozenset((1, 2, 3, 4, 5, 6, 15, 16, 22, 23, 43))
 """Function codes that are served."""
 CLIENT_WRITES = frozenset((5, 6, 15, 16, 22, 23))
 """Function codes by which a peer writes."""
+BIT_WRITES = frozenset((5, 15))
+"""Function codes that address bits; 16 of them make a register."""
 
 
 def frames(data: bytes) -> tuple[list[bytes], int, str | None]:
-    """Whole requests at the beginning of `data`, how many bytes they take, and what is wrong with what follows, if that can be told."""
+    """Return the whole requests at the start of `data`, their length in bytes, and what is wrong after them.
+
+    The last is None if nothing is wrong, or too little has arrived to know.
+    """
     found: list[bytes] = []
     used = 0
     while True:
@@ -27,8 +32,14 @@ def frames(data: bytes) -> tuple[list[bytes], int, str | None]:
 
 
 def refusal(frame: bytes) -> bytes:
-    """Exception 01, illegal function, in answer to a whole request that cannot be served."""
+    """Return the response 01, illegal function, to a whole request that cannot be served."""
     return frame[:4] + bytes([0, 3, frame[6], frame[7] | 0x80, 1])
+
+
+def writes_within(window: range, function: int, address: int, count: int) -> bool:
+    """Return whether a write touches only registers of the window; `count`: registers, also for bits."""
+    first = address // 16 if function in BIT_WRITES else address
+    return first in window and first + count - 1 in window
 
 
 def _problem(data: bytes) -> str | None:

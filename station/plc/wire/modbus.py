@@ -1,6 +1,7 @@
-"""Modbus TCP, a server and a client; the only file that imports pymodbus.
+"""Modbus TCP server and client; the only file that imports pymodbus.
 
-The server's memory is touched from its own loop alone, and a window is written in one call: no reader sees half of one.
+The server's memory is touched only from its own loop, and a window is written in one call: no reader sees
+half of a window.
 """
 
 import asyncio
@@ -25,62 +26,63 @@ from pymodbus.transport import CommParams, CommType
 
 from station import __version__
 from station.errors import LineError
-from station.plc.wire.access import Complaints, Network, WriteRight, admitted
-from station.plc.wire.framing import CLIENT_WRITES, FUNCTIONS, frames, refusal
+from station.plc.wire.access import Network
+from station.plc.wire.framing import CLIENT_WRITES, FUNCTIONS, frames, refusal, writes_within
+from station.plc.wire.peers import HANDSHAKE_S, MAX_WAITING, Peers
 from station.plc.wire.tls import Tls
 
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL)
 
 READ, WRITE = 3, 4
-"""Function codes of our own access; 4 can never be a client's write."""
-MAX_PEERS, HANDSHAKE_S = 128, 60.0
-MAX_WAITING = 16
-"""Requests of one peer that wait for their answer."""
+"""Function codes of the station's own access to the server's memory; 4 can never be a client's write."""
 MAX_BYTES = 16384
-"""Of requests that came at once; pymodbus would drop all beyond 264 without a word."""
+"""Number of bytes that may arrive at once; pymodbus would silently drop all beyond 264."""
 
 _peer: contextvars.ContextVar[int] = contextvars.ContextVar("peer")
 
 
 class _Peer(ServerRequestHandler):
-    """One connection. Its requests are answered one by one, also those that came in one packet; noise ends it."""
+    """One connection: answers its requests in turn; bytes that are not Modbus end it."""
 
     numbers = itertools.count(1)
 
-    def __init__(self, owner: "ModbusServer", server: ModbusTcpServer) -> None:
+    def __init__(self, peers: Peers, server: ModbusTcpServer) -> None:
         super().__init__(server, None, None, None)  # type: ignore[no-untyped-call]
-        self._owner = owner
+        self._peers = peers
         self._requests: asyncio.Queue[ModbusPDU | bytes] = asyncio.Queue(MAX_WAITING)
         self.max_buffer_size = MAX_BYTES
         self._answering: asyncio.Task[None] | None = None
         self.number, self.begun_s = next(self.numbers), time.monotonic()
         self.name = "unknown"
         self.heard_s = 0.0
-        """Time of the last request; 0: none yet."""
 
     def callback_connected(self) -> None:
         super().callback_connected()
         self.name = str((self.transport.get_extra_info("peername") or ("unknown",))[0])
-        if self._owner.welcome(self):
+        if self._peers.admit(self):
             self._answering = asyncio.create_task(self._answer())
         else:
             _drop(self)
 
     def callback_disconnected(self, exc: Exception | None) -> None:
         super().callback_disconnected(exc)
-        self.over()
+        self.finish()
 
-    def over(self) -> None:
-        """Nothing more is answered."""
+    def finish(self) -> None:
+        """Answer no more requests."""
         if self._answering is not None:
             self._answering.cancel()
             self._answering = None
-        self._owner.goodbye(self)
+        self._peers.remove(self.number)
 
     def end(self, why: str) -> None:
-        """Close the connection and say why."""
-        self._owner.complaints.closed(self.name, why)
-        self.over()
+        """Close the connection and log why."""
+        self._peers.complain(self.name, why)
+        self.drop()
+
+    def drop(self) -> None:
+        """Close the connection at once."""
+        self.finish()
         _drop(self)
 
     def callback_data(self, data: bytes, addr: tuple | None = None) -> int:  # type: ignore[type-arg]
@@ -98,7 +100,10 @@ class _Peer(ServerRequestHandler):
         return used
 
     def _read(self, frame: bytes) -> ModbusPDU | bytes:
-        """The request, or its refusal. pymodbus knows more functions than a register map needs, and stumbles over some of them."""
+        """Return the decoded request, or the refusal to send for it.
+
+        pymodbus knows more functions than a register map needs, and fails on some of them.
+        """
         self.last_pdu = None
         if frame[7] in FUNCTIONS:
             with suppress(Exception):  # struct errors, index errors, its own
@@ -117,7 +122,7 @@ class _Peer(ServerRequestHandler):
 
 
 def _drop(connection: TransactionManager) -> None:
-    """Close at once: a TLS peer that is gone would be waited for."""
+    """Close a connection at once, without waiting for a TLS peer that may be gone."""
     transport = connection.transport
     connection.close()
     if isinstance(transport, asyncio.WriteTransport):
@@ -125,7 +130,7 @@ def _drop(connection: TransactionManager) -> None:
 
 
 class ModbusServer:
-    """Registers that peers read and write; lives in the loop that starts it. Unit ids do not matter."""
+    """Registers that peers read and write; lives in the loop that starts it and answers every unit id."""
 
     def __init__(
         self,
@@ -139,49 +144,51 @@ class ModbusServer:
         writer_idle_s: float = float("inf"),
         tls: Tls = None,
     ) -> None:
+        """`words`: number of registers; `writable`: what peers may write; `on_write`: called after it."""
         self.host, self.port = host, port
-        self._words, self._writable, self._on_write = words, writable, on_write
-        self._allow, self._right, self._tls = allow, WriteRight(writer_idle_s), tls
+        self._words, self._writable, self._on_write, self._tls = words, writable, on_write, tls
+        self._peers = Peers(allow=allow, writer_idle_s=writer_idle_s)
         self._server: ModbusTcpServer | None = None
-        self._peers: dict[int, _Peer] = {}
-        self.complaints = Complaints()
 
     async def start(self) -> None:
-        """Listen. Raises LineError if the port cannot be had."""
-        info = {"VendorName": "weldgate", "ProductCode": "WG", "ProductName": "weldgate", "MajorMinorRevision": __version__}
+        """Listen. Raises LineError if the port cannot be used."""
+        info = {"VendorName": "weldgate", "ProductCode": "WG", "ProductName": "weldgate"}
+        info["MajorMinorRevision"] = __version__
         identity = ModbusDeviceIdentification(info_name=info)  # type: ignore[no-untyped-call]
-        memory = [SimData(0, count=self._words, datatype=DataType.REGISTERS)]
-        device = SimDevice(id=0, simdata=memory, use_bit_addressing=True, identity=identity, action=self._gate)
+        words = [SimData(0, count=self._words, datatype=DataType.REGISTERS)]
+        device = SimDevice(id=0, simdata=words, use_bit_addressing=True, identity=identity, action=self._gate)
         address = (self.host, self.port)
         try:
             if self._tls is None:
                 server = ModbusTcpServer(device, identity=identity, address=address)
             else:  # Modbus/TCP Security keeps the MBAP header, which pymodbus' own TLS framing lacks
-                server = ModbusTlsServer(device, identity=identity, address=address, sslctx=self._tls, framer=FramerType.SOCKET)
-            server.callback_new_connection = lambda: self._expected(server)  # type: ignore[method-assign]
+                server = ModbusTlsServer(
+                    device, identity=identity, address=address, sslctx=self._tls, framer=FramerType.SOCKET
+                )
+            server.callback_new_connection = lambda: self._new_peer(server)  # type: ignore[method-assign]
             await server.serve_forever(background=True)
         except (OSError, RuntimeError, ModbusException) as error:
-            raise LineError(f"Modbus server cannot listen on {self.host}:{self.port} ({error}); free the port or set plc.port") from None
+            where = f"{self.host}:{self.port}"
+            message = f"Modbus server cannot listen on {where} ({error}); free the port or set plc.port"
+            raise LineError(message) from None
         self._server = server
         if sockets := getattr(server.transport, "sockets", ()):
             self.port = sockets[0].getsockname()[1]
 
     async def stop(self) -> None:
-        """Zero all, close all connections."""
+        """Set all registers to 0 and close all connections."""
         if self._server is not None:
             await self.write(0, [0] * self._words)
-            for peer in list(self._peers.values()):
-                peer.over()
-                _drop(peer)
+            self._peers.drop_all()
             await self._server.shutdown()  # type: ignore[no-untyped-call]
             self._server = None
 
     async def read(self, address: int, count: int) -> list[int]:
-        """Words as they are now."""
-        return [int(w) for w in await self._running().async_getValues(1, READ, address, count)]
+        """Return the present words of `count` registers."""
+        return [int(word) for word in await self._running().async_getValues(1, READ, address, count)]
 
     async def write(self, address: int, words: list[int]) -> None:
-        """All words at once."""
+        """Write all words at once."""
         await self._running().async_setValues(1, WRITE, address, words)
 
     def _running(self) -> ModbusTcpServer:
@@ -189,46 +196,36 @@ class ModbusServer:
             raise LineError("the Modbus server is not running")
         return self._server
 
-    def _expected(self, server: ModbusTcpServer) -> _Peer:
-        """A peer that begins to connect; those that never finish, as after a failed TLS handshake, pymodbus would keep for ever."""
+    def _new_peer(self, server: ModbusTcpServer) -> _Peer:
+        """Return the peer of a new connection; forget those never set up, which pymodbus would keep."""
+        oldest_s = time.monotonic() - HANDSHAKE_S
         for key, peer in list(server.active_connections.items()):
-            if getattr(peer, "transport", None) is None and time.monotonic() - getattr(peer, "begun_s", 0.0) > HANDSHAKE_S:
+            if getattr(peer, "transport", None) is None and getattr(peer, "begun_s", 0.0) < oldest_s:
                 del server.active_connections[key]
-        return _Peer(self, server)
-
-    def welcome(self, peer: _Peer) -> bool:
-        """Whether a new connection may stay; the one that was silent longest makes room."""
-        if not admitted(peer.name, self._allow):
-            self.complaints.closed(peer.name, "is not on the list plc.allow")
-            return False
-        if len(self._peers) >= MAX_PEERS:
-            min(self._peers.values(), key=lambda p: p.heard_s).end(f"was silent longest of {MAX_PEERS} connections")
-        self._peers[peer.number] = peer
-        return True
-
-    def goodbye(self, peer: _Peer) -> None:
-        """It is gone."""
-        self._peers.pop(peer.number, None)
-        self._right.drop(peer.number)
+        return _Peer(self._peers, server)
 
     async def _gate(
-        self, function: int, _start: int, address: int, count: int, _current: list[int], values: list[int] | list[bool] | None
+        self,
+        function: int,
+        _start: int,
+        address: int,
+        count: int,
+        _current: list[int],
+        values: list[int] | list[bool] | None,
     ) -> ExcCodes | None:
-        """Refuse what a peer must not write: exception 02 outside its window, 06 while another peer has the right to write."""
+        """Refuse a write: exception 02 outside the window, 06 while another peer has the right to write."""
         if function not in CLIENT_WRITES or values is None:
             return None
-        first = address // 16 if function in (5, 15) else address
-        last = first + count - 1  # pymodbus counts registers here, for bits too
-        if not (first in self._writable and last in self._writable):
+        if not writes_within(self._writable, function, address, count):
             return ExcCodes.ILLEGAL_ADDRESS
-        if not self._right.take(_peer.get(0), time.monotonic()):
+        if not self._peers.may_write(_peer.get(0)):
             return ExcCodes.DEVICE_BUSY
         asyncio.get_running_loop().call_soon(self._on_write)
         return None
 
 
 class _Client(AsyncModbusTcpClient):
-    """pymodbus' client, plain or over TLS; its own TLS client leaves out the MBAP header, as its TLS server does."""
+    """pymodbus' client, plain or over TLS; unlike its own TLS client, it sends the MBAP header."""
 
     def __init__(self, host: str, port: int, timeout_s: float, tls: Tls) -> None:
         self.comm_params = CommParams(
@@ -245,15 +242,17 @@ class _Client(AsyncModbusTcpClient):
 
 
 class ModbusClient:
-    """Registers of another machine. A request without an answer in time closes the connection: its effect is unknown."""
+    """Registers of another machine; a request that is not answered in time closes the connection."""
 
-    def __init__(self, host: str, port: int, *, unit: int = 1, timeout_s: float = 1.0, tls: Tls = None) -> None:
+    def __init__(
+        self, host: str, port: int, *, unit: int = 1, timeout_s: float = 1.0, tls: Tls = None
+    ) -> None:
         self._host, self._port, self._unit, self._timeout_s, self._tls = host, port, unit, timeout_s, tls
         self._address = f"{host}:{port}"
         self._client: AsyncModbusTcpClient | None = None
 
     async def connect(self) -> None:
-        """A new connection. Raises LineError if nobody answers."""
+        """Open a new connection. Raises LineError if nothing answers."""
         self.close()
         client = _Client(self._host, self._port, self._timeout_s, self._tls)
         connected = False
@@ -261,31 +260,31 @@ class ModbusClient:
             connected = await client.connect()
         if not connected:
             _drop(client.ctx)
-            raise LineError(f"no Modbus server at {self._address}; is it running, and does a firewall let you through?")
+            raise LineError(f"no Modbus server at {self._address}; check that it runs, and the firewall")
         self._client = client
 
     async def read(self, address: int, count: int) -> list[int]:
-        """Up to 125 words in one read. Raises LineError."""
+        """Return up to 125 words in one read. Raises LineError."""
         try:
-            answer = await self._connected().read_holding_registers(address, count=count, device_id=self._unit)
+            response = await self._open().read_holding_registers(address, count=count, device_id=self._unit)
         except ModbusException as error:
             raise self._lost(f"read: {error}") from None
-        if answer.isError() or len(answer.registers) != count:
-            raise self._lost(f"read of {count} registers at {address} refused: {answer}")
-        return list(answer.registers)
+        if response.isError() or len(response.registers) != count:
+            raise self._lost(f"read of {count} registers at {address} refused: {response}")
+        return list(response.registers)
 
     async def write(self, address: int, words: list[int]) -> None:
-        """Up to 123 words in one write. Raises LineError; then it is unknown whether the peer has them."""
+        """Write up to 123 words at once. Raises LineError; then it is unknown whether the peer has them."""
         try:
-            answer = await self._connected().write_registers(address, words, device_id=self._unit)
+            response = await self._open().write_registers(address, words, device_id=self._unit)
         except ModbusException as error:
             raise self._lost(f"write: {error}") from None
-        if answer.isError():
-            raise self._lost(f"write of {len(words)} registers at {address} refused: {answer}")
+        if response.isError():
+            raise self._lost(f"write of {len(words)} registers at {address} refused: {response}")
 
-    def _connected(self) -> AsyncModbusTcpClient:
+    def _open(self) -> AsyncModbusTcpClient:
         if self._client is None or not self._client.connected:
-            raise self._lost("the connection is gone")
+            raise self._lost("the connection is closed")
         return self._client
 
     def _lost(self, why: str) -> LineError:
@@ -293,7 +292,7 @@ class ModbusClient:
         return LineError(f"{self._address}: {why}")
 
     def close(self) -> None:
-        """Drop the connection."""
+        """Close the connection."""
         if self._client is not None:
             _drop(self._client.ctx)
             self._client = None

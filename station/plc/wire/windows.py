@@ -1,4 +1,4 @@
-"""The two windows on the wire: in our own memory that the PLC reaches into (server), or in the PLC's memory (client)."""
+"""The two windows on the wire: in the station's memory (server) or in the memory of the PLC (client)."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -19,15 +19,20 @@ from station.plc.wire.modbus import ModbusClient, ModbusServer
 from station.plc.wire.tls import Tls, client_context, server_context
 from station.settings.model import PlcSettings
 
-SHOWS = int(Status.RESULT_VALID | Status.OK | Status.NOK)
+RESULT_BITS = int(Status.RESULT_VALID | Status.OK | Status.NOK)
+"""Bits of STATUS that show a result."""
 HEAD = BY_NAME["SEQ_HEAD"].address - STATUS_START
+"""Position of SEQ_HEAD in the status window."""
 AGE = BY_NAME["RESULT_AGE_10MS"].address - STATUS_START
+"""Position of RESULT_AGE_10MS in the status window."""
 RETRY_S = 0.5
+"""Shortest time between two attempts to connect."""
 WAITING = "waiting to connect again"
+"""Message of the error between two attempts."""
 
 
 class Wire(Protocol):
-    """How the windows travel. All methods belong to one loop."""
+    """Transport of the two windows. Use from one loop only."""
 
     @property
     def port(self) -> int:
@@ -35,23 +40,26 @@ class Wire(Protocol):
 
     @property
     def tick_s(self) -> float:
-        """Time between two looks at the command window."""
+        """Time between two reads of the command window."""
 
     async def open(self, wake: Callable[[], None]) -> None:
-        """Begin; `wake` is called when there may be something new. Raises LineError if that can never work."""
+        """Start; `wake` is called when there may be something new. Raises LineError if it can never work."""
 
     async def close(self) -> None:
-        """Leave no result behind, end."""
+        """Wipe the result and stop."""
 
     async def read_command(self) -> list[int]:
-        """The command window, read at once. Raises LineError if the PLC does not answer."""
+        """Return the command window, taken in one read. Raises LineError if the PLC does not answer."""
 
     async def publish(self, words: list[int]) -> None:
-        """Write the status window so that no reader ever takes half of a record for one. Raises LineError: effect unknown."""
+        """Write the status window so that no reader mistakes half a record for a whole one.
+
+        Raises LineError; then it is unknown what the PLC has.
+        """
 
 
 class ServerWire:
-    """The PLC is the client."""
+    """Windows in the station's own memory; the PLC is the client."""
 
     tick_s = 0.01
 
@@ -84,28 +92,31 @@ class ServerWire:
         return self._server.port
 
     async def open(self, wake: Callable[[], None]) -> None:
-        """Listen. Raises LineError if the port cannot be had."""
+        """Listen. Raises LineError if the port cannot be used."""
         self._wake = wake
         await self._server.start()
 
     async def close(self) -> None:
-        """Zero all and stop."""
+        """Set all registers to 0 and stop."""
         await self._server.stop()
 
     async def read_command(self) -> list[int]:
-        """The command window."""
+        """Return the command window."""
         words = await self._server.read(COMMAND_START, COMMAND_WORDS)
         return reordered(COMMAND_START, words) if self._low_word_first else words
 
     async def publish(self, words: list[int]) -> None:
-        """The whole window in one call."""
+        """Write the whole status window in one call."""
         await self._server.write(
             STATUS_START, reordered(STATUS_START, words) if self._low_word_first else words
         )
 
 
 class ClientWire:
-    """The PLC is the server: its memory keeps what was written last, so the old result is wiped before anything else."""
+    """Windows in the memory of the PLC, which is the server.
+
+    Its memory keeps what was written last, so the old result is wiped before anything else.
+    """
 
     def __init__(
         self,
@@ -119,31 +130,31 @@ class ClientWire:
         low_word_first: bool,
         tls: Tls,
     ) -> None:
-        """`bases`: addresses of the command and of the status window in the PLC."""
+        """`bases`: addresses of the command window and of the status window in the PLC."""
         self._client = ModbusClient(host, port, unit=unit, timeout_s=timeout_s, tls=tls)
         self.port, self.tick_s = port, poll_s
         self._command_base, self._status_base = bases
         self._low_word_first = low_word_first
         self._written: list[int] | None = None
-        """Status window as the PLC has it; None: unknown."""
+        """Status window as the PLC has it; None if unknown."""
         self._connected = False
         self._tried_s = -1e9
 
     async def open(self, wake: Callable[[], None]) -> None:
-        """Nothing to do: the PLC may come later."""
+        """Do nothing: the connection is made when it is first needed."""
 
     async def close(self) -> None:
-        """Wipe the result, drop the connection."""
+        """Wipe the result and close the connection."""
         if self._connected:
             try:
                 await self._invalidate()
             except LineError:
-                pass  # the PLC's watchdog must see it
+                pass  # the watchdog of the PLC notices that the heartbeat stops
         self._client.close()
         self._connected = False
 
     async def read_command(self) -> list[int]:
-        """The command window; connects if need be, and then wipes the status window first. Raises LineError."""
+        """Return the command window; connect and wipe the status window first if needed. Raises LineError."""
         if not self._connected:
             await self._connect()
         try:
@@ -154,29 +165,34 @@ class ClientWire:
         return reordered(COMMAND_START, words) if self._low_word_first else words
 
     async def publish(self, words: list[int]) -> None:
-        """The record, then STATUS, whose bits say that it counts; before another record all bits go that do not hold any longer."""
+        """Write the record, then STATUS, whose bits make it valid. Raises LineError.
+
+        Before another record, all bits of STATUS that no longer hold are cleared.
+        """
         if self._low_word_first:
             words = reordered(STATUS_START, words)
         before = self._written
-        if before is not None and _but_age(before) == _but_age(words):
+        if before is not None and _without_age(before) == _without_age(words):
             return
         try:
-            if before is not None and before[HEAD] != words[HEAD] and before[0] & SHOWS:
-                await self._status([before[0] & words[0] & ~SHOWS])  # READY must not outlive the result
+            if before is not None and before[HEAD] != words[HEAD] and before[0] & RESULT_BITS:
+                await self._write_status(
+                    [before[0] & words[0] & ~RESULT_BITS]
+                )  # READY must not outlive the result
             if before is None or before[1:] != words[1:]:
-                await self._record(words)
+                await self._write_record(words)
             if before is None or before[0] != words[0]:
-                await self._status(words[:1])
+                await self._write_status(words[:1])
         except LineError:
             self._lost()
             raise
         self._written = list(words)
 
     async def _connect(self) -> None:
-        now = time.monotonic()
-        if now - self._tried_s < RETRY_S:
+        now_s = time.monotonic()
+        if now_s - self._tried_s < RETRY_S:
             raise LineError(WAITING)
-        self._tried_s = now
+        self._tried_s = now_s
         await self._client.connect()
         try:
             await self._invalidate()
@@ -186,26 +202,26 @@ class ClientWire:
         self._connected = True
 
     async def _invalidate(self) -> None:
-        await self._status([0])
-        await self._record([0] * STATUS_WORDS)
+        await self._write_status([0])
+        await self._write_record([0] * STATUS_WORDS)
 
     def _lost(self) -> None:
         self._client.close()
         self._connected, self._written = False, None
 
-    async def _status(self, word: list[int]) -> None:
+    async def _write_status(self, word: list[int]) -> None:
         await self._client.write(self._status_base, word)
 
-    async def _record(self, words: list[int]) -> None:
+    async def _write_record(self, words: list[int]) -> None:
         await self._client.write(self._status_base + 1, words[1:])
 
 
-def _but_age(words: list[int]) -> list[int]:
+def _without_age(words: list[int]) -> list[int]:
     return [*words[:AGE], *words[AGE + 1 :]]
 
 
 def make_wire(settings: PlcSettings) -> Wire:
-    """Make the wire that the settings name, not yet open. Raises SettingsError."""
+    """Return the wire that the settings describe, not yet open. Raises SettingsError."""
     if settings.mode == "server":
         return ServerWire(
             settings.host,
