@@ -1,22 +1,22 @@
-"""The station's errors, each with a message that says what, where and what to do.
+"""Errors of the station; each message is one line: what happened, where, and what to do.
 
 WeldgateError
 ├── SettingsError      a settings file is missing or wrong
-├── ModelError         a model file is missing, damaged or not one of ours
+├── ModelError         a model file is missing, damaged or not one of weldgate's
 ├── ImageError         an image cannot be read or has the wrong form
 ├── CameraError
 │   ├── CameraLost     the camera is absent or stopped answering
 │   ├── FrameTimeout   no frame came in time
 │   └── FrameDamaged   a frame came incomplete or in the wrong size
-├── LocateError        no weld ring, or not wholly in view
+├── LocateError        no weld ring, or not completely in view
 ├── RecordError        a record cannot be written or read
-├── LoginError         a person may not do that
+├── LoginError         the login does not allow the action
 └── LineError          the PLC connection cannot be made
 """
 
 
 class WeldgateError(Exception):
-    """Any error that a user or operator can act upon; the message is one line."""
+    """An error that a user or operator can act upon; the message is one line."""
 
 
 class SettingsError(WeldgateError):
@@ -40,21 +40,23 @@ class CameraLost(CameraError):
 
 
 class FrameTimeout(CameraError):
-    """No frame came in time; the camera itself is there."""
+    """No frame came in time, although the camera is connected."""
 
 
 class FrameDamaged(CameraError):
     """A frame came incomplete or in the wrong size; it must not be judged."""
 
     def __init__(self, message: str, wrong_size: bool = False) -> None:
+        """`wrong_size`: the frame has another size than set."""
         super().__init__(message)
         self.wrong_size = wrong_size
 
 
 class LocateError(WeldgateError):
-    """No weld ring was found, or it is not wholly in view."""
+    """No weld ring was found, or it is not completely in view."""
 
     def __init__(self, message: str, out_of_view: bool = False) -> None:
+        """`out_of_view`: a ring was found, but not completely in view."""
         super().__init__(message)
         self.out_of_view = out_of_view
 
@@ -64,9 +66,10 @@ class RecordError(WeldgateError):
 
 
 class LoginError(WeldgateError):
-    """A person may not do that; `locked_s`: seconds until another PIN may be tried."""
+    """The login does not allow the action, or failed."""
 
     def __init__(self, message: str, locked_s: float = 0.0) -> None:
+        """`locked_s`: seconds until another PIN may be tried."""
         super().__init__(message)
         self.locked_s = locked_s
 

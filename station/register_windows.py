@@ -1,7 +1,7 @@
-"""The two windows of the register map: where they begin and how many registers they hold.
+"""Start and size of the two windows of the register map.
 
-Settings check the addresses in the PLC by these numbers, and the register map fills the windows: a test fails
-if it does not.
+Settings check the addresses in the PLC against these numbers; a test ensures that the register map fills the
+windows.
 """
 
 COMMAND_START = 0

@@ -44,8 +44,8 @@ class Judge:
 
     def _run(self) -> None:
         while not self._stop.is_set():
-            self._line.checked_in(WELL)
+            self._line.check_in(WELL)
             request = self._line.next_request(0.05)
-            if isinstance(request, Trigger) and self._line.in_work(request):
+            if isinstance(request, Trigger) and self._line.awaits_result(request):
                 self._line.exposure_done(request)
                 self._line.publish(self._decide(request))

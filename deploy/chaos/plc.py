@@ -25,7 +25,7 @@ from station.errors import WeldgateError
 from station.plc.line import make_line
 from station.plc.map.registers import VerdictCode
 from station.plc.port import Result, Trigger
-from station.plc.simulated.line import Answer, Knob, SimulatedLine
+from station.plc.simulated.line import Answer, Fault, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
 from station.settings.model import PlcSettings
 
@@ -139,9 +139,9 @@ async def _drive(
     await plc.connect(10.0)
     try:
         for number in track(range(parts), description=mode, transient=True, disable=not progress):
-            knobs = frozenset(knob for knob in Knob if rng.random() < KNOB_SHARE)
+            knobs = frozenset(knob for knob in Fault if rng.random() < KNOB_SHARE)
             serial = f"P{number:07d}"
-            answer = await plc.inspect(serial, WINDOW_S * SLACK, knobs=knobs)
+            answer = await plc.inspect(serial, WINDOW_S * SLACK, faults=knobs)
             calm = 0 if knobs or serial in truths.late else calm + 1
             _note(report, answer, serial, knobs=knobs, truths=truths, undisturbed=calm > SETTLED)
     finally:
@@ -150,7 +150,7 @@ async def _drive(
 
 
 def _note(
-    report: Report, answer: Answer, serial: str, *, knobs: frozenset[Knob], truths: Truths, undisturbed: bool
+    report: Report, answer: Answer, serial: str, *, knobs: frozenset[Fault], truths: Truths, undisturbed: bool
 ) -> None:
     report.parts += 1
     report.knobs.update(str(knob) for knob in knobs)
@@ -215,7 +215,7 @@ def print_reports(reports: Sequence[Report], console: Console) -> None:
             [f"{statistics.median(own.valid_ms):.1f}" if own.valid_ms else "-" for own in reports],
         ),
     ]
-    rows += [(f"fault: {fault}", [str(report.knobs[str(fault)]) for report in reports]) for fault in Knob]
+    rows += [(f"fault: {fault}", [str(report.knobs[str(fault)]) for report in reports]) for fault in Fault]
     conditions = sorted({name for report in reports for name in report.refused_by})
     rows += [
         (f"refused: {name}", [str(report.refused_by[name]) for report in reports]) for name in conditions

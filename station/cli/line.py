@@ -69,7 +69,7 @@ def run_line_command(arguments: argparse.Namespace) -> int:
         parts=arguments.parts,
         pace_s=arguments.pace,
         accept_simulated=arguments.accept_simulated,
-        knobs=tuple(arguments.fault),
+        faults=tuple(arguments.fault),
         seed=arguments.seed,
     )
     asyncio.run(run_line(run))
@@ -84,6 +84,6 @@ class _ListFaults(argparse.Action):
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         """Print one name per line."""
-        from station.plc.simulated.line import Knob
+        from station.plc.simulated.line import Fault
 
-        parser.exit(message="".join(f"{fault}\n" for fault in Knob))
+        parser.exit(message="".join(f"{fault}\n" for fault in Fault))

@@ -80,7 +80,7 @@ class Cycle:
                 self._camera.look_after()
                 self._hear()
                 seen = self._seen()
-                self._line.checked_in(health(seen))
+                self._line.check_in(health(seen))
                 self._status.send(seen, self._reloaded_s)
                 request = self._line.next_request(IDLE_S)
                 if isinstance(request, Trigger):
@@ -95,7 +95,7 @@ class Cycle:
     def _serve(self, trigger: Trigger) -> None:
         failed = f"part of trigger {trigger.trigger_id} was not answered"
         answered = self._guarded(partial(self._procedure.part, trigger, self._loaded), failed)
-        if not answered and self._line.in_work(trigger):
+        if not answered and self._line.awaits_result(trigger):
             self._guarded(partial(self._procedure.unanswered, trigger, self._loaded), failed)
 
     def _hear(self) -> None:
@@ -151,7 +151,7 @@ class Cycle:
         except Exception:  # the recipe before is still in use
             log.exception("recipe %d was not loaded", number)
             return False
-        if not self._line.wanted(command):
+        if not self._line.awaits_command(command):
             log.error("recipe %d was loaded too late, the one before stays in use", number)
             return False
         self._use(loaded)
@@ -183,7 +183,7 @@ class Cycle:
         )
 
     def _check_in(self) -> None:
-        self._line.checked_in(health(self._seen()))
+        self._line.check_in(health(self._seen()))
 
     def _guarded(self, work: Callable[[], None], failed: str) -> bool:
         """A fault nobody foresaw costs one part, not the station: the handshake answers ERROR at its deadline. Whether all went well."""

@@ -119,7 +119,7 @@ class Procedure:
 
     def _grab_for(self, trigger: Trigger) -> Grab:
         """Grab the part of this trigger; no frame if the trigger is over and another part may lie there."""
-        if not self._line.in_work(trigger):
+        if not self._line.awaits_result(trigger):
             return Grab(None, Reason.ABORTED, None)
         grab = self._grab()
         self._line.exposure_done(trigger)

@@ -1,1 +1,1 @@
-"""The line behind one port: register map, handshake, Modbus."""
+"""The connection to the PLC of the line: register map, handshake and Modbus."""

@@ -1,4 +1,4 @@
-"""What went over the bus: each edge with its time, who made it, and what was against the rules, in words; kept in a file a day."""
+"""Log of the bus: each change with its time, its author and the rule that it broke; one file per day."""
 
 import json
 import logging
@@ -17,51 +17,53 @@ from station.plc.map.registers import Control, Offline, Status, Value, VerdictCo
 log = logging.getLogger("weldgate.bus")
 
 NAME = "bus-{:%Y-%m-%d}.jsonl"
+"""Name of the file of a day."""
 WORDS = {
     "command": ("TRIGGER_ID", "COMMAND", "ARG"),
     "status": ("ACK_TRIGGER_ID", "RESULT_TRIGGER_ID", "VERDICT", "CMD_ECHO"),
 }
+"""Registers of each window, besides CONTROL and STATUS, whose changes are logged."""
 TAIL_BYTES = 160
-"""About the length of a line."""
+"""Approximate length of a line."""
 MAX_WAITING = 10_000
-"""Edges that wait for a slow disk; more are left out, and the file says how many."""
+"""Number of edges that wait for a slow disk; further ones are left out and counted in the file."""
 
 Values = dict[str, Value]
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """One change."""
+    """One change on the bus."""
 
     time: str
-    """UTC, milliseconds."""
+    """UTC, ISO 8601 with milliseconds."""
     by: str
-    """PLC or station."""
+    """Author of the change: PLC or station."""
     name: str
     value: int | str
     note: str = field(default="", kw_only=True)
-    """Who cleared it, or which rule was broken."""
+    """How it was cleared, or which rule was broken."""
 
 
 def edges(time_s: float, command: tuple[Values, Values], status: tuple[Values, Values]) -> Iterator[Edge]:
-    """Changes between two looks (before, after) at the windows."""
+    """Yield the changes between two readings (before, after) of both windows at an epoch time."""
     when = datetime.fromtimestamp(time_s, UTC).isoformat(timespec="milliseconds")
-    held, sent = (named_bits(Control, number(values, "CONTROL")) for values in command)
-    said, says = (named_bits(Status, number(values, "STATUS")) for values in status)
+    control_before, control = (named_bits(Control, number(values, "CONTROL")) for values in command)
+    bits_before, bits = (named_bits(Status, number(values, "STATUS")) for values in status)
     for bit in Control:
-        if (held ^ sent) & bit:
-            on = bool(sent & bit)
-            yield Edge(when, "PLC", str(bit.name), int(on), note=_plc_note(bit, on, said))
+        if (control_before ^ control) & bit:
+            on = bool(control & bit)
+            yield Edge(when, "PLC", str(bit.name), int(on), note=_plc_note(bit, on, bits_before))
     yield from _words(when, "PLC", WORDS["command"], command)
     for flag in Status:
-        if (said ^ says) & flag:
-            on = bool(says & flag)
-            note = _station_note(flag, on, sent & ~held, status[1])
+        if (bits_before ^ bits) & flag:
+            on = bool(bits & flag)
+            note = _station_note(flag, on, control & ~control_before, status[1])
             yield Edge(when, "station", str(flag.name), int(on), note=note)
     yield from _words(when, "station", WORDS["status"], status)
     if status[0]["OFFLINE_REASON"] != status[1]["OFFLINE_REASON"]:
         reason = Offline(number(status[1], "OFFLINE_REASON"))
-        note = "PLC_HEARTBEAT stands still" if reason is Offline.PLC_SILENT else ""
+        note = "PLC_HEARTBEAT does not change" if reason is Offline.PLC_SILENT else ""
         yield Edge(when, "station", "OFFLINE_REASON", reason.name, note=note)
 
 
@@ -73,12 +75,12 @@ def _words(when: str, by: str, names: tuple[str, ...], windows: tuple[Values, Va
             yield Edge(when, by, name, VerdictCode(value).name if name == "VERDICT" else value)
 
 
-def _plc_note(bit: Control, on: bool, said: Status) -> str:
-    if bit is Control.TRIGGER and on and Status.READY not in said:
+def _plc_note(bit: Control, on: bool, status: Status) -> str:
+    if bit is Control.TRIGGER and on and Status.READY not in status:
         return "rule broken: TRIGGER while READY was 0"
-    if bit is Control.TRIGGER and not on and Status.TRIGGER_ACK not in said:
+    if bit is Control.TRIGGER and not on and Status.TRIGGER_ACK not in status:
         return "rule broken: TRIGGER dropped before TRIGGER_ACK"
-    if bit is Control.RESULT_ACK and on and Status.RESULT_VALID not in said:
+    if bit is Control.RESULT_ACK and on and Status.RESULT_VALID not in status:
         return "rule broken: RESULT_ACK without RESULT_VALID"
     return ""
 
@@ -88,11 +90,15 @@ def _station_note(flag: Status, on: bool, rising: Control, after: Values) -> str
         return (
             "rule broken: TRIGGER_ID 0 or repeated"
             if after["ERROR_CODE"] == ERROR_BAD_TRIGGER_ID
-            else "TRIGGER not taken"
+            else "TRIGGER not accepted"
         )
     if flag is Status.MAINTENANCE and on:
         stuck = after["ERROR_CODE"] == ERROR_STUCK_BIT
-        return "rule broken: TRIGGER or RESULT_ACK held too long" if stuck else "the station's disk fills"
+        return (
+            "rule broken: TRIGGER or RESULT_ACK held too long"
+            if stuck
+            else "the station's disk is nearly full"
+        )
     if flag is Status.RESULT_VALID and not on:
         if rising & Control.RESULT_ACK:
             return "cleared by RESULT_ACK"
@@ -103,16 +109,16 @@ def _station_note(flag: Status, on: bool, rising: Control, after: Values) -> str
 
 
 class BusLog:
-    """Hears the line, writes edges to the folder from a thread of its own: a slow disk never holds up the handshake."""
+    """Writes the changes of both windows, in its own thread so that no disk delays the handshake."""
 
     def __init__(self, folder: Path, days: int) -> None:
-        """Files older than `days` are removed. Raises RecordError if the folder cannot be used."""
+        """Files older than `days` are deleted. Raises RecordError if the folder cannot be used."""
         self._folder, self._days = folder, days
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise RecordError(
-                f"{folder}: the bus cannot be recorded there ({error.strerror}); set archive.folder"
+                f"{folder}: the bus log cannot be written ({error.strerror}); set archive.folder"
             ) from None
         self._last: tuple[Values, Values] | None = None
         self._queue: queue.Queue[Edge | None] = queue.Queue(MAX_WAITING)
@@ -122,7 +128,7 @@ class BusLog:
         self._thread.start()
 
     def __call__(self, time_s: float, command: dict[str, Value], status: dict[str, Value]) -> None:
-        """Both windows as they are now."""
+        """Take in both windows as they are now."""
         if self._last is not None:
             for edge in edges(time_s, (self._last[0], command), (self._last[1], status)):
                 try:
@@ -132,7 +138,7 @@ class BusLog:
         self._last = command, status
 
     def close(self) -> None:
-        """Write what waits, end."""
+        """Write what waits and end the thread."""
         if self._thread.is_alive():
             self._queue.put(None)
             self._thread.join(timeout=10)
@@ -151,7 +157,7 @@ class BusLog:
             except OSError as error:
                 self._left_out += len(waiting)
                 log.error(
-                    "%s: %d edges of the bus could not be written (%s)",
+                    "%s: %d edges of the bus log could not be written (%s)",
                     self._folder,
                     len(waiting),
                     error.strerror,
@@ -173,39 +179,40 @@ class BusLog:
                     path.unlink()
 
 
-def tail_bus(folder: Path, place: tuple[str, int], most: int) -> tuple[list[Edge], tuple[str, int]]:
-    """Edges written since `place` (file name, byte), at most the newest, and the place after them. Raises RecordError."""
+def tail_bus(folder: Path, place: tuple[str, int], limit: int) -> tuple[list[Edge], tuple[str, int]]:
+    """Return the edges written since `place` (file name, byte) and the place after them. Raises RecordError.
+
+    `limit`: number of edges at most, of which the newest are returned.
+    """
     found: list[Edge] = []
     files = sorted(folder.glob("bus-????-??-??.jsonl"))
     for path in [file for file in files if file.name >= place[0]] if place[0] else files[-1:]:
-        begun = place[1] if path.name == place[0] else 0
+        start = place[1] if path.name == place[0] else 0
         try:
             with path.open("rb") as file:
-                begin = max(begun, file.seek(0, os.SEEK_END) - most * TAIL_BYTES)
+                begin = max(start, file.seek(0, os.SEEK_END) - limit * TAIL_BYTES)
                 file.seek(begin)
                 whole = file.read().rpartition(b"\n")[0]
-            lines = whole.split(b"\n")[1 if begin > begun else 0 :]
+            lines = whole.split(b"\n")[1 if begin > start else 0 :]
             found += [Edge(**json.loads(line)) for line in lines if line]
         except OSError as error:
             raise RecordError(f"{path}: cannot be read ({error.strerror})") from None
         except (ValueError, TypeError):
-            raise RecordError(f"{path}: a line cannot be read; the file was cut off or changed") from None
+            raise RecordError(f"{path}: a line cannot be read; the file was truncated or modified") from None
         place = path.name, begin + len(whole) + (1 if whole else 0)
-    return found[-most:], place
+    return found[-limit:], place
 
 
 def read_bus(folder: Path) -> Iterator[Edge]:
-    """All recorded edges in order. Raises RecordError if there are none, or a line cannot be read."""
+    """Yield all logged edges in order. Raises RecordError if there are none or a line cannot be read."""
     files = sorted(folder.glob("bus-????-??-??.jsonl"))
     if not files:
-        raise RecordError(
-            f"{folder}: no record of the bus here; name an archive folder of an engine that ran"
-        )
+        raise RecordError(f"{folder}: no bus log in this folder; name the archive folder of an engine")
     for path in files:
         for count, line in enumerate(path.read_text().splitlines(), start=1):
             try:
                 yield Edge(**json.loads(line))
             except (ValueError, TypeError):
                 raise RecordError(
-                    f"{path}: line {count} cannot be read; the file was cut off or changed"
+                    f"{path}: line {count} cannot be read; the file was truncated or modified"
                 ) from None

@@ -1,4 +1,4 @@
-"""What the handshake sees, remembers and decides: frozen facts, no rule."""
+"""Inputs, state and outcome of the handshake: frozen facts without rules."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -7,11 +7,11 @@ from station.plc.map.registers import Control, Offline, all_bits
 from station.plc.port import Command, Health, Result, Trigger
 
 ALL_CONTROL = all_bits(Control)
-"""Every bit of CONTROL: what counts as held until the PLC is heard."""
+"""Mask of all bits of CONTROL, which count as held until the first read of the PLC."""
 
 
 class Phase(StrEnum):
-    """Where the handshake stands."""
+    """Phase of the handshake; the module `handshake` shows how they follow each other."""
 
     OFFLINE = "offline"
     IDLE = "idle"
@@ -28,16 +28,16 @@ class Times:
     result_ttl_s: float = 10.0
     stuck_s: float = 5.0
     plc_heartbeat_s: float = 2.0
-    """0: not watched."""
+    """Longest time without a change of PLC_HEARTBEAT; 0: not monitored."""
     alive_s: float = 3.0
-    """The inspection must have checked in within this time."""
+    """Longest time between two check-ins of the inspection."""
     command_s: float = 30.0
-    """A command not carried out by then is refused."""
+    """Time after which a command that was not carried out is refused."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
-    """What one step sees. `control` and the rest of the command window as read at once."""
+    """Inputs of one step; `control` and the rest of the command window come from the same read."""
 
     control: Control
     plc_heartbeat: int
@@ -47,28 +47,28 @@ class Inputs:
     health: Health
     health_age_s: float
     exposure_done_for: int | None = None
-    """Number of the trigger whose picture is taken."""
+    """Number of the trigger whose image has been taken."""
     result: Result | None = None
     arg: int = 0
     command_done: tuple[int, bool] | None = None
-    """Number of the command that was carried out, and whether well."""
+    """Number of the command that has ended, and whether it succeeded."""
     link: bool = True
-    """The PLC can be reached."""
+    """True if the PLC can be reached."""
     link_was_lost: bool = False
-    """The last record may not have reached the PLC whole."""
+    """True if the last record may not have reached the PLC completely."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class State:
-    """All that the handshake remembers."""
+    """State that the handshake keeps between two steps."""
 
     phase: Phase = Phase.OFFLINE
     control: Control = ALL_CONTROL
-    """As seen last; all bits at the start, so that a bit the PLC still holds is no edge."""
+    """CONTROL as last read; all bits at the start, so that a bit already held does not count as an edge."""
     trigger: Trigger | None = None
     last_id: int = 0
     accepted: int = 0
-    """Triggers accepted so far."""
+    """Number of triggers accepted so far."""
     trigger_ack: bool = False
     exposure_done: bool = False
     missed: bool = False
@@ -77,9 +77,9 @@ class State:
     cmd_done: bool = False
     cmd_echo: int = 0
     command: Command | None = None
-    """Being carried out."""
+    """Command that the station is carrying out."""
     commands: int = 0
-    """Commands handed to the station so far."""
+    """Number of commands passed to the station so far."""
     result: Result | None = None
     shown_s: float = 0.0
     process_ms: int = 0
@@ -96,12 +96,12 @@ class State:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """Outcome of one step: the new state, and what to do."""
+    """Outcome of one step: the new state and what the line must do."""
 
     state: State
     start: Trigger | None = None
     command: Command | None = None
     refused: bool = False
-    """The offered result was not shown."""
+    """True if the offered result was not accepted for publication."""
     again: bool = False
-    """Step again at once, after publishing."""
+    """True if another step must follow at once, after publishing."""

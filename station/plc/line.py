@@ -1,4 +1,4 @@
-"""`Line` over Modbus, whichever side is the server: a thread whose loop alone steps the handshake and touches the wire."""
+"""`Line` over Modbus, as server or client: one thread, whose loop steps the handshake and uses the wire."""
 
 import asyncio
 import logging
@@ -35,18 +35,18 @@ from station.settings.model import PlcSettings
 log = logging.getLogger("weldgate.line")
 
 GRACE_S = 2.0
-"""A link lost for longer ends the part in work."""
+"""Longest interruption of the link that does not end the part in progress."""
 ANSWER_S = 5.0
-"""Beyond the deadline a published result is answered, one way or the other, within this time."""
+"""Time after the deadline within which it is known whether a published result was shown."""
 
 Offer = tuple[Result, "Future[bool]"]
-"""A result, and where to say whether the PLC was shown it."""
+"""Result offered for publication, and the future that learns whether the PLC could read it."""
 Bus = Callable[[float, dict[str, Value], dict[str, Value]], None]
-"""Hears command and status window after every step, with the epoch time."""
+"""Function called after every step with the epoch time, the command window and the status window."""
 
 
 def make_line(settings: PlcSettings, bus: Bus = lambda _time, _command, _status: None) -> "ModbusLine":
-    """The line that the settings name, not yet started. Raises SettingsError."""
+    """Return the line that the settings describe, not yet started. Raises SettingsError."""
     times = Times(
         deadline_s=settings.deadline_ms / 1000,
         result_ttl_s=settings.result_ttl_ms / 1000,
@@ -57,7 +57,7 @@ def make_line(settings: PlcSettings, bus: Bus = lambda _time, _command, _status:
 
 
 class ModbusLine:
-    """The station's side of the handshake."""
+    """The station's side of the handshake, over Modbus."""
 
     def __init__(self, wire: Wire, times: Times, bus: Bus = lambda _time, _command, _status: None) -> None:
         self._wire, self._times, self._bus = wire, times, bus
@@ -72,12 +72,12 @@ class ModbusLine:
         self._offered: Offer | None = None
         self._done: tuple[int, bool] | None = None
         self._after: list[Callable[[], None]] = []
-        """To do once the PLC can read what was stepped."""
+        """Actions to take once the PLC can read the outcome of the step."""
         self._lost_s: float | None = None
-        self._lost_said = ""
-        self._values_before = self._values(0.0)
-        self._status_words = pack_window(STATUS_START, STATUS_WORDS, self._values_before)
-        """As published last."""
+        self._lost_reported = ""
+        self._published = self._values(0.0)
+        self._status_words = pack_window(STATUS_START, STATUS_WORDS, self._published)
+        """Words of the status window as last published."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
         self._wake: asyncio.Event | None = None
@@ -85,100 +85,105 @@ class ModbusLine:
 
     @property
     def port(self) -> int:
-        """Port in use."""
+        """TCP port in use."""
         return self._wire.port
 
     def start(self) -> None:
-        """Listen, or begin to look for the PLC. Raises LineError."""
-        up: Future[None] = Future()
-        self._thread = threading.Thread(target=lambda: asyncio.run(self._run(up)), name="modbus", daemon=True)
+        """Listen, or begin to connect to the PLC. Raises LineError."""
+        started: Future[None] = Future()
+        self._thread = threading.Thread(
+            target=lambda: asyncio.run(self._run(started)), name="modbus", daemon=True
+        )
         self._thread.start()
         try:
-            up.result(timeout=10)
+            started.result(timeout=10)
         except LineError:
             self._thread.join(timeout=5)
             self._thread = self._loop = None
             raise
 
     def stop(self) -> None:
-        """Wipe the record, close the connections, end the thread."""
+        """Wipe the record, close the connections and end the thread."""
         if self._thread is None:
             return
         self._stopping = True
         with suppress(LineError):
-            self._poke()
+            self._wake_loop()
         self._thread.join(timeout=10)
         self._thread = None
 
     def next_request(self, timeout_s: float) -> Trigger | Command | None:
-        """The next accepted trigger or command, or None."""
+        """Return the next accepted trigger or command; None if none came in time."""
         try:
             return self._requests.get(timeout=timeout_s)
         except queue.Empty:
             return None
 
-    def in_work(self, trigger: Trigger) -> bool:
-        """Whether this trigger still waits for its answer."""
+    def awaits_result(self, trigger: Trigger) -> bool:
+        """Return whether this trigger still waits for its result."""
         return self._state.trigger is not None and self._state.trigger.number == trigger.number
 
     def exposure_done(self, trigger: Trigger) -> None:
-        """The picture is taken: the part may move."""
+        """Report that the image is taken: the part may move."""
         self._exposed = trigger.number
-        self._poke()
+        self._wake_loop()
 
-    def command_done(self, command: Command, well: bool) -> None:
-        """A command was carried out, or refused."""
-        self._done = (command.number, well)
-        self._poke()
+    def command_done(self, command: Command, succeeded: bool) -> None:
+        """Report that a command was carried out, or failed."""
+        self._done = (command.number, succeeded)
+        self._wake_loop()
 
-    def wanted(self, command: Command) -> bool:
-        """Whether this command still waits to be carried out."""
+    def awaits_command(self, command: Command) -> bool:
+        """Return whether this command still waits to be carried out."""
         return self._state.command is not None and self._state.command.number == command.number
 
     def publish(self, result: Result) -> bool:
-        """Offer a result; returns once it is readable. False if it came too late or may not have reached the PLC."""
-        answer: Future[bool] = Future()
-        self._offered = (result, answer)
-        self._poke()
+        """Publish a result and return once the PLC can read it.
+
+        Returns False if it came too late or may not have reached the PLC.
+        """
+        shown: Future[bool] = Future()
+        self._offered = (result, shown)
+        self._wake_loop()
         try:
-            return answer.result(timeout=self._times.deadline_s + ANSWER_S)
-        except TimeoutError:  # the link is down for so long that the deadline has answered
+            return shown.result(timeout=self._times.deadline_s + ANSWER_S)
+        except TimeoutError:  # the link was down until the deadline had passed
             return False
 
-    def checked_in(self, health: Health) -> None:
-        """The inspection is alive."""
+    def check_in(self, health: Health) -> None:
+        """Report that the inspection is alive, and its health. Raises LineError."""
         if self._loop is None or self._loop.is_closed():
             raise LineError("the Modbus line is not running")
         self._health, self._health_s = health, time.monotonic()
 
     def reset_counts(self) -> None:
-        """Parts are counted from 0."""
+        """Set the counters back to 0."""
         self._counts = dict.fromkeys(self._counts, 0)
 
     def state(self) -> LineState:
-        """What the line reads and publishes now, decoded."""
-        return status_window.decoded(self._command, self._values_before)
+        """Return what the line reads and publishes now, decoded."""
+        return status_window.decoded(self._command, self._published)
 
     def windows(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Words of the command window as last read and of the status window as last published."""
+        """Return the words of the command window as last read and of the status window as last published."""
         return tuple(self._command_words), tuple(self._status_words)
 
-    def _poke(self) -> None:
+    def _wake_loop(self) -> None:
         if self._loop is None or self._loop.is_closed():
             raise LineError("the Modbus line is not running")
         if self._wake is not None:
-            with suppress(RuntimeError):  # the loop may end in between
+            with suppress(RuntimeError):  # the loop may have ended meanwhile
                 self._loop.call_soon_threadsafe(self._wake.set)
 
-    async def _run(self, up: "Future[None]") -> None:
+    async def _run(self, started: "Future[None]") -> None:
         self._loop, self._wake = asyncio.get_running_loop(), asyncio.Event()
         try:
             await self._wire.open(self._wake.set)
             await self._step()
         except LineError as error:
-            up.set_exception(error)
+            started.set_exception(error)
             return
-        up.set_result(None)
+        started.set_result(None)
         try:
             while not self._stopping:
                 self._wake.clear()
@@ -192,7 +197,10 @@ class ModbusLine:
             await self._wire.close()
 
     async def _step(self) -> bool:
-        """Read the command window, step, publish the whole record, then act. Whether to step again at once."""
+        """Read the command window, step, publish the whole record, then act.
+
+        Returns whether another step must follow at once.
+        """
         now_s, link = time.monotonic(), True
         try:
             self._command_words = await self._wire.read_command()
@@ -206,7 +214,10 @@ class ModbusLine:
             and now_s - self._lost_s < min(self._times.plc_heartbeat_s or GRACE_S, GRACE_S)
         ):
             return False
-        offered, self._offered = self._offered, None  # taken once: the cycle may offer the next at any moment
+        offered, self._offered = (
+            self._offered,
+            None,
+        )  # taken once: the cycle may offer the next one at any time
         outcome = step(
             self._state,
             self._inputs(now_s, link, None if offered is None else offered[0]),
@@ -223,10 +234,10 @@ class ModbusLine:
                 await self._wire.publish(words)
             except LineError as error:
                 self._link_lost(error, now_s)
-                self._bus(time.time(), self._command, self._values_before)
+                self._bus(time.time(), self._command, self._published)
                 return False
             self._lost_s = None
-        self._values_before, self._status_words = values, words
+        self._published, self._status_words = values, words
         self._bus(time.time(), self._command, values)
         after, self._after = self._after, []
         for act in after:
@@ -255,10 +266,8 @@ class ModbusLine:
 
     def _plan(self, outcome: Step, offered: "Offer | None") -> None:
         if offered is not None:
-            result, answer = offered
-            self._after.append(
-                lambda: answer.set_result(not outcome.refused and self._state.result is result)
-            )
+            result, shown = offered
+            self._after.append(lambda: shown.set_result(not outcome.refused and self._state.result is result))
         if outcome.start is not None:
             start = outcome.start
             self._after.append(lambda: self._requests.put(start))
@@ -266,29 +275,29 @@ class ModbusLine:
             self._carry_out(outcome.command)
 
     def _carry_out(self, command: Command) -> None:
-        """What the line can do itself; the rest is for the cycle."""
+        """Carry out a command that the line can do itself; pass the others to the cycle."""
         if command.code is CommandCode.RESET_COUNTERS:
             self.reset_counts()
         elif command.code is CommandCode.TIME_SYNC:
             plc_s = number(self._command, "PLC_TIME")
-            log.info("PLC time is %+.1f s from the station's", plc_s - time.time())
+            log.info("the PLC's clock differs from the station's by %+.1f s", plc_s - time.time())
         else:
             self._after.append(lambda: self._requests.put(command))
 
     def _count(self, after: State) -> None:
         if after.phase is Phase.SHOWN and self._state.phase is Phase.BUSY and after.result is not None:
-            shown = after.result.verdict
-            if shown in self._counts:
-                self._counts[shown] += 1
+            verdict = after.result.verdict
+            if verdict in self._counts:
+                self._counts[verdict] += 1
 
     def _values(self, now_s: float) -> dict[str, Value]:
-        now = self._counts  # set back from another thread
-        counts = Counts(now[VerdictCode.OK], now[VerdictCode.NOK], now[VerdictCode.ERROR])
+        by_verdict = self._counts  # another thread may replace it
+        counts = Counts(*(by_verdict[code] for code in (VerdictCode.OK, VerdictCode.NOK, VerdictCode.ERROR)))
         return status_window.values(self._state, self._health, now_s, counts)
 
     def _link_lost(self, error: LineError, now_s: float) -> None:
         if self._lost_s is None:
-            self._lost_s, self._lost_said = now_s, ""
-        if str(error) not in (WAITING, self._lost_said):
-            self._lost_said = str(error)
+            self._lost_s, self._lost_reported = now_s, ""
+        if str(error) not in (WAITING, self._lost_reported):
+            self._lost_reported = str(error)
             log.warning("PLC: %s", error)

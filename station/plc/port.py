@@ -1,4 +1,4 @@
-"""What the cycle needs of a line, whatever the wire."""
+"""What the cycle needs of a line, independent of the transport."""
 
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -8,16 +8,16 @@ from station.plc.map.registers import CommandCode, Control, Flags, Offline, Stat
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
-    """An accepted trigger: judge the part that is in the nest now."""
+    """An accepted trigger: a request to inspect the part that is in the nest now."""
 
     trigger_id: int
     serial: str
     accepted_s: float
-    """Monotonic time."""
+    """Monotonic time of acceptance."""
     number: int
-    """Counts accepted triggers; never repeats, unlike the PLC's 16-bit id."""
+    """Running number of accepted triggers; unlike the PLC's 16-bit id it never repeats."""
     golden: bool = field(default=False, kw_only=True)
-    """A master lies in the nest: the answer is TEST whatever is found."""
+    """True if a master is in the nest: the PLC always reads TEST."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,13 +27,14 @@ class Command:
     code: CommandCode
     arg: int
     number: int
-    """Counts such commands."""
+    """Running number of such commands."""
     since_s: float
+    """Monotonic time of the command."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """What is published for one trigger. Scores x 10000; masks over segments."""
+    """Result published for one trigger; scores are multiplied by 10000, masks have one bit per segment."""
 
     trigger: Trigger
     verdict: VerdictCode
@@ -48,31 +49,31 @@ class Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Health:
-    """What the station says of itself."""
+    """Health of the station, as published to the PLC."""
 
     ready: bool
-    """Camera, model and archive are fit for a part."""
+    """True if camera, model and archive are ready for a part."""
     offline: Offline
     failure: bool
-    """NE 107: failure."""
+    """True for failure (NE 107)."""
     config_crc: int
     out_of_spec: bool = False
-    """NE 107: out of specification; the pictures drift, the parts are judged."""
+    """True for out of specification (NE 107): the images drift, parts are still judged."""
     function_check: bool = False
-    """NE 107: a master was judged wrongly; no verdict counts until it is judged right."""
+    """True for function check (NE 107): a master was misjudged or its check is due."""
     maintenance: bool = False
-    """NE 107: maintenance required; the disk fills."""
+    """True for maintenance required (NE 107): the disk is nearly full."""
     recipe: int = 1
-    """Number of the recipe in use."""
+    """Number of the active recipe."""
     alarm: int = 0
-    """Code of the gravest alarm."""
+    """Code of the most severe active alarm; 0: none."""
     bit: int = 0
-    """Bit of STATUS that is set by hand; only while someone works on the station."""
+    """Bit of STATUS that is set by hand in service mode; 0: none."""
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Parts by what the PLC read, since the engine started or the counters were reset."""
+    """Numbers of parts by published verdict, since the start of the engine or the last reset."""
 
     ok: int = 0
     nok: int = 0
@@ -86,53 +87,53 @@ class Counts:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineState:
-    """What PLC and station read of each other now, decoded from both windows."""
+    """State of the line, decoded from the command window and the status window."""
 
     control: Control
-    """Bits that the PLC holds, as read last."""
+    """Bits of CONTROL as last read."""
     status: Status
-    """Bits that the PLC reads, as published last."""
+    """Bits of STATUS as last published."""
     offline: Offline
-    """Why READY is 0."""
+    """Reason why READY is 0."""
     error_code: int
     counts: Counts
 
 
 class Line(Protocol):
-    """A line: gives triggers, takes results."""
+    """A line that provides triggers and takes results."""
 
     def start(self) -> None:
         """Connect or listen. Raises LineError."""
 
     def stop(self) -> None:
-        """Close; leaves nothing running."""
+        """Close the connection; nothing is left running."""
 
     def next_request(self, timeout_s: float) -> Trigger | Command | None:
-        """The next accepted trigger or command, or None."""
+        """Return the next accepted trigger or command; None if none came in time."""
 
-    def wanted(self, command: Command) -> bool:
-        """Whether this command still waits to be carried out; if not, the PLC was told that it is refused."""
+    def awaits_command(self, command: Command) -> bool:
+        """Return whether this command still waits to be carried out; if not, the PLC has read its refusal."""
 
-    def command_done(self, command: Command, well: bool) -> None:
-        """A command was carried out, or refused."""
+    def command_done(self, command: Command, succeeded: bool) -> None:
+        """Report that a command was carried out, or failed."""
 
-    def in_work(self, trigger: Trigger) -> bool:
-        """Whether this trigger still waits for its answer; if not, its part may be gone."""
+    def awaits_result(self, trigger: Trigger) -> bool:
+        """Return whether this trigger still waits for its result; if not, its part may have left the nest."""
 
     def exposure_done(self, trigger: Trigger) -> None:
-        """The picture is taken: the part may move."""
+        """Report that the image is taken: the part may move."""
 
     def publish(self, result: Result) -> bool:
-        """Offer a result; returns once it is readable. False if it came too late and was not shown."""
+        """Publish a result and return once the PLC can read it; False if it came too late."""
 
     def reset_counts(self) -> None:
-        """Parts are counted from 0, as if the PLC had commanded it."""
+        """Set the counters back to 0, as if the PLC had commanded it."""
 
-    def checked_in(self, health: Health) -> None:
-        """The inspection is alive; call at least every 500 ms while idle."""
+    def check_in(self, health: Health) -> None:
+        """Report that the inspection is alive, and its health; call at least every 500 ms while idle."""
 
     def state(self) -> LineState:
-        """What the line reads and publishes now, decoded."""
+        """Return what the line reads and publishes now, decoded."""
 
     def windows(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Words of the command window as last read and of the status window as last published."""
+        """Return the words of the command window as last read and of the status window as last published."""

@@ -14,6 +14,6 @@ def line() -> Iterator[ModbusLine]:
     """A station that is a server and well; the right to write is soon free for the next peer."""
     kept = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0, writer_idle_ms=100))
     kept.start()
-    kept.checked_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))
+    kept.check_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))
     yield kept
     kept.stop()

@@ -68,7 +68,7 @@ def test_an_edge_has_its_time_in_milliseconds_and_who_made_it() -> None:
             Status.READY,
             Status(0),
             {"OFFLINE_REASON": int(Offline.PLC_SILENT)},
-            "PLC_HEARTBEAT stands still",
+            "PLC_HEARTBEAT does not change",
         ),
     ],
 )
@@ -119,7 +119,7 @@ def test_a_line_that_was_cut_off_is_named(tmp_path: Path) -> None:
     path.write_text(path.read_text()[:-10])
     with pytest.raises(RecordError, match="line 2"):
         list(read_bus(tmp_path))
-    with pytest.raises(RecordError, match="no record of the bus"):
+    with pytest.raises(RecordError, match="no bus log in this folder"):
         list(read_bus(tmp_path / "absent"))
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from deploy.chaos.plc import MODES, main, run
-from station.plc.simulated.line import Knob
+from station.plc.simulated.line import Fault
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -13,7 +13,7 @@ def test_no_ok_is_ever_false(mode: str, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr("deploy.chaos.plc.WINDOW_S", 0.5)  # a part without a result takes all of it
     report = run(mode, 70, seed=1968)
     assert report.good, report
-    assert min(report.knobs[str(knob)] for knob in Knob) >= 3, "every knob was turned a few times"
+    assert min(report.knobs[str(knob)] for knob in Fault) >= 3, "every knob was turned a few times"
     assert 25 < report.passed < 55
 
 

@@ -117,11 +117,11 @@ class LateStart:
     def __getattr__(self, name: str) -> object:
         return getattr(self._line, name)
 
-    def checked_in(self, health: object) -> None:
+    def check_in(self, health: object) -> None:
         if self._line._loop is None:  # type: ignore[attr-defined]
             time.sleep(0.01)
         else:
-            self._line.checked_in(health)  # type: ignore[attr-defined]
+            self._line.check_in(health)  # type: ignore[attr-defined]
 
 
 def test_a_mute_plc_is_told_and_nothing_blocks(ports: int, caplog: pytest.LogCaptureFixture) -> None:
@@ -132,7 +132,7 @@ def test_a_mute_plc_is_told_and_nothing_blocks(ports: int, caplog: pytest.LogCap
             until = time.monotonic() + 10
             while line.state().offline is not Offline.PLC_SILENT and time.monotonic() < until:
                 start = time.monotonic()
-                line.checked_in(WELL)
+                line.check_in(WELL)
                 assert line.next_request(0.01) is None
                 assert time.monotonic() - start < 0.1
             assert line.state().offline is Offline.PLC_SILENT

@@ -70,7 +70,7 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
     bus = BusLog(tmp_path, days=1)
     line = make_line(settings, bus)
     line.start()
-    line.checked_in(WELL)
+    line.check_in(WELL)
     windows: OwnWindows | RemoteWindows = OwnWindows("127.0.0.1", settings.port)
     if mode == "server":
         windows = RemoteWindows(lambda: ModbusClient("127.0.0.1", line.port))
@@ -104,7 +104,7 @@ class Judging:
 
     def _run(self) -> None:
         while not self._stop.is_set():
-            self._line.checked_in(self.health)
+            self._line.check_in(self.health)
             request = self._line.next_request(0.02)
             if isinstance(request, Trigger):
                 self.triggers.append(request)
@@ -236,4 +236,4 @@ def test_a_stopped_station_leaves_no_verdict_and_takes_no_more(rig: Rig) -> None
         left = rig.plc(conversation)
     assert left is None or (left["VERDICT"], left["STATUS"]) == (0, 0)
     with pytest.raises(LineError, match="not running"):
-        rig.line.checked_in(WELL)
+        rig.line.check_in(WELL)

@@ -108,7 +108,7 @@ def test_a_hundred_thousand_frames_of_noise_change_nothing(line: ModbusLine) -> 
             words = status_window(plc)
             assert words[5:7] == [0, 0xFFFF]
             assert words[0] & 0b11100000 == 0
-            line.checked_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))
+            line.check_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))
             seen += 1
         for thread in shouting:
             thread.join()

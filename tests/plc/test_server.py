@@ -90,7 +90,7 @@ def test_a_result_is_readable_when_publish_returns(line: ModbusLine) -> None:
     trigger = line.next_request(2.0)
     assert isinstance(trigger, Trigger)
     assert trigger.trigger_id == 77
-    assert line.in_work(trigger)
+    assert line.awaits_result(trigger)
     result = replace(judged(trigger, VerdictCode.NOK, 70000), reason=1, seg_nok_mask=8, flags=Flags.SIMULATED)
     assert line.publish(result)
 

@@ -38,7 +38,7 @@ def test_a_plc_with_a_certificate_is_served_and_others_are_not(folder: Path, tmp
     make_certificates(tmp_path / "other", "127.0.0.1", 7)
     line = make_line(PlcSettings(port=free_ports(1)[0], tls=settings(folder, "server"), plc_heartbeat_ms=0))
     line.start()
-    line.checked_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))
+    line.check_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))
 
     async def ready(tls: ssl.SSLContext | None) -> bool:
         plc = SimulatedLine(

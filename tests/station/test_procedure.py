@@ -64,7 +64,7 @@ class Line:
     published: list[Result] = field(default_factory=list)
     exposed: list[Trigger] = field(default_factory=list)
 
-    def in_work(self, _trigger: Trigger) -> bool:
+    def awaits_result(self, _trigger: Trigger) -> bool:
         return self.working
 
     def exposure_done(self, trigger: Trigger) -> None:
@@ -74,7 +74,7 @@ class Line:
         self.published.append(result)
         return self.in_time
 
-    def checked_in(self, _health: Health) -> None: ...
+    def check_in(self, _health: Health) -> None: ...
 
     def state(self) -> LineState:
         return self.told

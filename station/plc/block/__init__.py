@@ -1,1 +1,1 @@
-"""The PLC's side of the handshake: one definition, in the dialect of each PLC and as Python for the simulated line."""
+"""The PLC's side of the handshake: one definition, printed for each PLC and run by the simulated line."""

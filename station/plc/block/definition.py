@@ -1,6 +1,7 @@
-"""The function block that a PLC runs against a station: variables, the acceptance rule and the handshake, in plain Structured Text.
+"""The PLC's function block in plain Structured Text: variables, acceptance rule and handshake.
 
-Only what IEC 61131-3 and SCL have in common is used, so that the dialects differ in declarations alone.
+It uses only what IEC 61131-3 and SCL have in common, so that the dialects differ in their declarations alone.
+Its texts are printed into the files for PLCs and are part of the interface.
 """
 
 from dataclasses import dataclass, field
@@ -19,17 +20,23 @@ from station.plc.map.registers import (
 )
 
 NAME = "WeldgateStation"
+"""Name of the function block."""
 RECORD = "WeldgateStatus"
+"""Name of the type that holds the decoded status window."""
 MAX_AGE_10MS = 500
+"""Age from which a result is too old, in units of 10 ms."""
 HEARTBEAT = "T#500ms"
+"""Time within which the station's heartbeat must change."""
 OWN_HEARTBEAT = "T#100ms"
+"""Time between two changes of the PLC's heartbeat."""
 
 Role = Literal["input", "output", "local"]
+"""Section in which a variable is declared."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One variable of the block."""
+    """One variable of the function block."""
 
     role: Role
     name: str
@@ -39,12 +46,12 @@ class Variable:
 
 
 def word(name: str, offset: int = 0) -> str:
-    """The word of a register in the status window."""
+    """Return the expression for a word of a register in the status window."""
     return f"Window[{BY_NAME[name].address - STATUS_START + offset}]"
 
 
 def bit(name: str, mask: int) -> str:
-    """Whether a bit of a register in the status window is set."""
+    """Return the condition that a bit of a register in the status window is set."""
     return f"(({word(name)} AND 16#{mask:04X}) <> 16#0000)"
 
 
@@ -68,26 +75,29 @@ POINTS: tuple[tuple[str, str], ...] = (
     ),
     ("picture of an emulated camera", f"AcceptSimulated OR NOT {bit('FLAGS', Flags.SIMULATED)}"),
 )
-"""The acceptance rule: what is said if a point does not hold, and the point. OK passes only if all hold in one read."""
+"""Acceptance rule: text of each point's refusal, and its condition. A part passes if all hold at once."""
 NOT_READY, NO_RESULT = len(POINTS) + 1, len(POINTS) + 2
+"""Values of Refusal for a part without a result."""
 REFUSALS = (
     "",
     *(name for name, _ in POINTS),
     "station not READY, or without heartbeat",
     "no result inside the window",
 )
-"""What Refusal means."""
+"""Meaning of each value of Refusal."""
 
 
 def fields() -> list[tuple[str, str, Register]]:
-    """Name, type and register of each field of the record: 32-bit values as UDINT, text as words."""
-    answer = []
-    for r in MAP:
-        if r.address >= STATUS_START:
-            plain = {"u16": "UINT", "u32": "UDINT", "f32": "UDINT", "ascii": "WORD"}[r.kind]
-            count = r.words if r.kind == "ascii" else r.count
-            answer.append((r.name, plain if count == 1 else f"ARRAY[0..{count - 1}] OF {plain}", r))
-    return answer
+    """Return name, type and register of each field of the record: 32-bit values as UDINT, text as words."""
+    found = []
+    for register in MAP:
+        if register.address >= STATUS_START:
+            plain = {"u16": "UINT", "u32": "UDINT", "f32": "UDINT", "ascii": "WORD"}[register.kind]
+            count = register.words if register.kind == "ascii" else register.count
+            found.append(
+                (register.name, plain if count == 1 else f"ARRAY[0..{count - 1}] OF {plain}", register)
+            )
+    return found
 
 
 VARIABLES: tuple[Variable, ...] = (
@@ -122,7 +132,8 @@ VARIABLES: tuple[Variable, ...] = (
         "local",
         "State",
         "UINT",
-        "0 idle, 10 wait for READY and a heartbeat, 20 number written, 30 triggered, 40 in work, 50 acknowledged",
+        "0 idle, 10 wait for READY and a heartbeat, 20 number written, 30 triggered, 40 in work, "
+        "50 acknowledged",
     ),
     Variable("local", "Control", "WORD", "bits of the handshake"),
     Variable("local", "TriggerId", "UINT", "of the part in the nest"),
@@ -139,12 +150,14 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("local", "PartTimer", "TON", ""),
     Variable("local", "StartEdge", "R_TRIG", ""),
 )
+"""Variables of the function block in the order of their declaration."""
 
 
 def body() -> str:
-    """The block's statements."""
+    """Return the block's statements."""
     rule = "\n".join(
-        f"        IF (Refusal = 0) AND NOT ({point}) THEN\n            Refusal := {number}; (* {name} *)\n        END_IF;"
+        f"        IF (Refusal = 0) AND NOT ({point}) THEN\n"
+        f"            Refusal := {number}; (* {name} *)\n        END_IF;"
         for number, (name, point) in enumerate(POINTS, start=1)
     )
     enable, trigger, acknowledge = (
@@ -153,6 +166,7 @@ def body() -> str:
         int(Control.ENABLE | Control.RESULT_ACK),
     )
     golden = trigger | int(Control.GOLDEN_CHECK)
+    acknowledged = f"(WORD_TO_UINT({word('ACK_TRIGGER_ID')}) = TriggerId)"
     serial, echo = BY_NAME["PART_SERIAL"].address, BY_NAME["SERIAL_ECHO"].address - STATUS_START
     return f"""\
 (* heartbeat of the station: must move within {HEARTBEAT} *)
@@ -210,7 +224,7 @@ CASE State OF
         State := 30;
     END_IF;
 30:
-    IF Fresh AND {bit("STATUS", Status.TRIGGER_ACK)} AND (WORD_TO_UINT({word("ACK_TRIGGER_ID")}) = TriggerId) THEN
+    IF Fresh AND {bit("STATUS", Status.TRIGGER_ACK)} AND {acknowledged} THEN
         Control := 16#{enable:04X};
         State := 40;
     END_IF;
@@ -255,15 +269,15 @@ Command[4] := UINT_TO_WORD(Argument);
 
 def _decoded() -> str:
     lines = []
-    for name, _, r in fields():
-        at = r.address - STATUS_START
-        if r.kind in ("u32", "f32"):
+    for name, _, register in fields():
+        at = register.address - STATUS_START
+        if register.kind in ("u32", "f32"):
             lines.append(
                 f"Info.{name} := (WORD_TO_UDINT(Window[{at}]) * 65536) + WORD_TO_UDINT(Window[{at + 1}]);"
             )
-        elif r.words == 1:
+        elif register.words == 1:
             lines.append(f"Info.{name} := WORD_TO_UINT(Window[{at}]);")
         else:
-            value = f"Window[{at} + i]" if r.kind == "ascii" else f"WORD_TO_UINT(Window[{at} + i])"
-            lines.append(f"FOR i := 0 TO {r.words - 1} DO\n    Info.{name}[i] := {value};\nEND_FOR;")
+            value = f"Window[{at} + i]" if register.kind == "ascii" else f"WORD_TO_UINT(Window[{at} + i])"
+            lines.append(f"FOR i := 0 TO {register.words - 1} DO\n    Info.{name}[i] := {value};\nEND_FOR;")
     return "\n".join(lines)

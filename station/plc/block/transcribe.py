@@ -1,7 +1,7 @@
-"""The block's Structured Text as Python, statement by statement, so that the simulated line runs what PLCs run.
+"""Translates the block's Structured Text to Python, so that the simulated line runs what PLCs run.
 
-Covers what `definition` uses: assignments, IF, CASE, FOR, calls of TON and R_TRIG, and expressions by the precedence of IEC 61131-3
-table 71.
+Covers what `definition` uses: assignments, IF, CASE, FOR, calls of TON and R_TRIG, and expressions by the
+precedence of IEC 61131-3 table 71.
 """
 
 import re
@@ -15,6 +15,7 @@ from station.plc.block.definition import RECORD, VARIABLES, body, fields
 TOKEN = re.compile(
     r"\(\*.*?\*\)|:=|<>|<=|>=|\.\.|T#\w+|16#[0-9A-F]+|[A-Za-z_]\w*|\d+|[-+*()\[\];,.:=<>]", re.S
 )
+"""Pattern of a comment or of one token."""
 LEVELS: tuple[dict[str, str], ...] = (
     {"OR": "|"},
     {"AND": "&"},
@@ -23,20 +24,21 @@ LEVELS: tuple[dict[str, str], ...] = (
     {"+": "+", "-": "-"},
     {"*": "*", "MOD": "%"},
 )
-"""Operators, the weakest first, with Python's sign; each operation is put in brackets."""
+"""Operators with Python's equivalent, the weakest first; every operation is put in brackets."""
 UNITS = {"ms": 0.001, "s": 1.0}
+"""Units of a time in seconds."""
 
 
 def tokens(text: str) -> list[str]:
-    """Words and signs, without comments. Raises ValueError at anything else."""
+    """Return the tokens of a text without its comments. Raises ValueError for anything else."""
     rest = TOKEN.sub("", text).strip()
     if rest:
         raise ValueError(f"not Structured Text: {rest[:20]!r}")
-    return [t for t in TOKEN.findall(text) if not t.startswith("(*")]
+    return [token for token in TOKEN.findall(text) if not token.startswith("(*")]
 
 
 class _Writer:
-    """Reads tokens, writes lines of Python."""
+    """Translator from tokens to lines of Python."""
 
     def __init__(self, text: str) -> None:
         self._tokens = tokens(text)
@@ -44,19 +46,18 @@ class _Writer:
         self.lines: list[str] = []
 
     def program(self) -> str:
-        """All statements."""
+        """Return all statements as Python."""
         self._statements(0, ())
         return "\n".join(self.lines)
 
     def _peek(self, ahead: int = 0) -> str:
         return self._tokens[self._at + ahead] if self._at + ahead < len(self._tokens) else ""
 
-    def _take(self, *wanted: str) -> str:
+    def _take(self, *expected: str) -> str:
         token = self._peek()
-        if wanted and token not in wanted:
-            raise ValueError(
-                f"{token!r} where {' or '.join(wanted)} belongs, near {' '.join(self._tokens[self._at - 5 : self._at + 5])}"
-            )
+        if expected and token not in expected:
+            near = " ".join(self._tokens[self._at - 5 : self._at + 5])
+            raise ValueError(f"{token!r} instead of {' or '.join(expected)}, near {near}")
         self._at += 1
         return token
 
@@ -140,14 +141,14 @@ class _Writer:
         self._put(depth, f"v.{block}(now_s, {', '.join(given)})")
 
     def _place(self) -> str:
-        answer = "v." + self._take()
+        place = "v." + self._take()
         while self._peek() in (".", "["):
             if self._take() == ".":
-                answer += "." + self._take()
+                place += "." + self._take()
             else:
-                answer += f"[{self._expression()}]"
+                place += f"[{self._expression()}]"
                 self._take("]")
-        return answer
+        return place
 
     def _expression(self, level: int = 0) -> str:
         if level == len(LEVELS):
@@ -189,7 +190,7 @@ class _Writer:
 
 @dataclass
 class _Ton:
-    """IEC 61131-3 table 46: Q once IN was TRUE for PT."""
+    """On-delay timer of IEC 61131-3, table 46: Q is TRUE once IN has been TRUE for PT."""
 
     Q: bool = False
     since_s: float | None = None
@@ -204,7 +205,7 @@ class _Ton:
 
 @dataclass
 class _Edge:
-    """IEC 61131-3 table 44: Q for one call after CLK rose."""
+    """Rising-edge trigger of IEC 61131-3, table 44: Q is TRUE for one call after CLK rose."""
 
     Q: bool = False
     before: bool = field(default=False)
@@ -214,7 +215,7 @@ class _Edge:
 
 
 def compiled() -> CodeType:
-    """The block's body as code over `v`, the variables, and `now_s`."""
+    """Return the block's body as code over `v` (the variables) and `now_s`."""
     return compile(_Writer(body()).program(), "WeldgateStation", "exec")
 
 
@@ -232,7 +233,7 @@ def _initial(kind: str, initial: str) -> Any:
 
 
 class Block:
-    """An instance of the block; its variables are attributes of `v`."""
+    """Instance of the function block; its variables are attributes of `v`."""
 
     _code: CodeType | None = None
 
@@ -242,7 +243,7 @@ class Block:
         self.v = SimpleNamespace(**dict(_variables()))
 
     def cycle(self, now_s: float) -> None:
-        """One cycle of the PLC at a monotonic time."""
+        """Run one cycle of the PLC at a monotonic time."""
         if Block._code is not None:
             exec(Block._code, {"v": self.v, "now_s": now_s})
 

@@ -1,1 +1,1 @@
-"""The register map and its codes, and the documents printed from them."""
+"""Register map, codes, and the documents printed from them."""

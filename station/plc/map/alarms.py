@@ -1,4 +1,4 @@
-"""What the station raises an alarm for: code, cause, next action. The same code on the screen, in ERROR_CODE and in the register map."""
+"""Alarms of the station: code, cause and action, for the window, ERROR_CODE and the register map."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -15,7 +15,7 @@ from station.plc.map.registers import ERROR_NOT_JUDGED
 
 
 class Alarm(IntEnum):
-    """Lasting states; those from 16#3000 on are told in ERROR_CODE while nothing else is."""
+    """Alarms that stay active; ERROR_CODE shows them while there is no other error."""
 
     CAMERA_LOST = 0x3001
     ARCHIVE_FULL = 0x3002
@@ -30,13 +30,13 @@ class Alarm(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Explained:
-    """For the operator."""
+    """Explanation of an alarm code for the operator."""
 
     cause: str
     action: str
 
 
-TEXTS: dict[int, Explained] = {
+TEXTS: dict[int, Explained] = {  # printed in the register map: part of the interface
     Alarm.CAMERA_LOST: Explained(
         "camera lost", "check power and cable of the camera; the station connects again by itself"
     ),
@@ -75,6 +75,7 @@ TEXTS: dict[int, Explained] = {
     ),
 }
 
+"""Explanation by alarm or error code."""
 _AGAIN = "judge the part again; if it comes back, "
 _PART_ACTIONS = {
     Reason.NO_WELD_FOUND: "check that a part lies in the nest, and the camera's view",

@@ -1,6 +1,7 @@
-"""The register map as data; packs and unpacks words. Pure.
+"""The register map as data, and the packing and unpacking of its words; pure.
 
-Addresses are 0-based PDU addresses; 32-bit values have the high word first; bit address = register * 16 + bit, LSB = 0.
+Addresses are 0-based PDU addresses; 32-bit values have the high word first; bit address = register * 16 +
+bit, where bit 0 is the least significant one.
 """
 
 import struct
@@ -21,7 +22,9 @@ Value = int | float | str | tuple[int, ...]
 Bits = TypeVar("Bits", bound=IntFlag)
 
 TEST_U32, TEST_F32 = 0x12345678, 123.456
+"""Constant values by which an integrator checks the word order."""
 MAP_VERSION = 2
+"""Version of the map, published in the register of the same name."""
 
 
 class Control(IntFlag):
@@ -38,7 +41,7 @@ class Control(IntFlag):
 
 
 class Status(IntFlag):
-    """Bits of STATUS, written by the station. OK and NOK are antivalent while RESULT_VALID."""
+    """Bits of STATUS, written by the station; OK and NOK are complementary while RESULT_VALID is 1."""
 
     ONLINE = 1
     READY = 2
@@ -59,7 +62,7 @@ class Status(IntFlag):
 
 
 class Flags(IntFlag):
-    """Bits of FLAGS."""
+    """Bits of FLAGS, written by the station."""
 
     SIMULATED = 1
     NOVEL = 2
@@ -67,7 +70,7 @@ class Flags(IntFlag):
 
 
 class VerdictCode(IntEnum):
-    """Values of VERDICT; 0 means no verdict, as after any watchdog."""
+    """Values of VERDICT; 0 means that there is no verdict."""
 
     NONE = 0
     OK = 1
@@ -94,7 +97,7 @@ class Offline(IntEnum):
 
 
 class CommandCode(IntEnum):
-    """Values of COMMAND; where MERLIC has the same command, its code."""
+    """Values of COMMAND; commands that MERLIC also has use its codes."""
 
     LOAD_RECIPE = 2
     RESET = 7
@@ -105,16 +108,16 @@ class CommandCode(IntEnum):
 
 
 REFUSED = 0xFFFF
-"""CMD_ECHO of a command that was not done."""
+"""Value of CMD_ECHO for a command that was refused."""
 ERROR_NOT_JUDGED = 0x1000
-"""ERROR_CODE is this and REASON when a part could not be judged."""
+"""Value of ERROR_CODE for a part that could not be judged, to which REASON is added."""
 ALL_SEGMENTS = (1 << SEGMENTS) - 1
-"""SEG_NOK_MASK or SEG_INVALID_MASK with the bits of all segments."""
+"""Mask with the bits of all segments, for SEG_NOK_MASK and SEG_INVALID_MASK."""
 
 
 @dataclass(frozen=True, slots=True)
 class Register:
-    """One entry of the map."""
+    """One entry of the register map."""
 
     address: int
     name: str
@@ -125,7 +128,7 @@ class Register:
 
     @property
     def words(self) -> int:
-        """Registers taken."""
+        """Number of registers that the value takes."""
         return {"u16": self.count, "u32": 2 * self.count, "f32": 2 * self.count, "ascii": self.count // 2}[
             self.kind
         ]
@@ -136,7 +139,8 @@ MAP: tuple[Register, ...] = (
         0,
         "CONTROL",
         "u16",
-        "bits ENABLE, TRIGGER (edge), RESULT_ACK, CLEAR_ERROR (edge), EXEC_COMMAND (edge), SET_OFFLINE, GOLDEN_CHECK, ABORT",
+        "bits ENABLE, TRIGGER (edge), RESULT_ACK, CLEAR_ERROR (edge), EXEC_COMMAND (edge), SET_OFFLINE, "
+        "GOLDEN_CHECK, ABORT",
     ),
     Register(1, "PLC_HEARTBEAT", "u16", "any change counts"),
     Register(2, "TRIGGER_ID", "u16", "1 to 65535, must differ from the last accepted; 0 is invalid"),
@@ -184,27 +188,29 @@ MAP: tuple[Register, ...] = (
         174,
         "FLAGS",
         "u16",
-        "bit 0 SIMULATED: picture of an emulated camera; bit 1 NOVEL: it is unlike all training images; bit 2 DRIFT: the last "
-        "pictures differ from the line's reference",
+        "bit 0 SIMULATED: picture of an emulated camera; bit 1 NOVEL: it is unlike all training images; "
+        "bit 2 DRIFT: the last pictures differ from the line's reference",
     ),
     Register(175, "SEQ_TAIL", "u16", "equals SEQ_HEAD when the record is complete"),
 )
+"""Registers in the order of their addresses; their meanings are printed in the documents."""
 BY_NAME = {register.name: register for register in MAP}
+"""Registers by name."""
 
 
 def pack(register: Register, value: Value) -> list[int]:
-    """Words of one value. Raises ValueError if it does not fit."""
+    """Return the words of one value. Raises ValueError if it does not fit."""
     if register.kind == "ascii":
         if not isinstance(value, str):
-            raise ValueError(f"{register.name}: needs text")
+            raise ValueError(f"{register.name}: text expected")
         raw = value.encode("ascii", "replace")
         if len(raw) > register.count:
-            raise ValueError(f"{register.name}: {len(raw)} characters, at most {register.count}")
+            raise ValueError(f"{register.name}: {len(raw)} characters; at most {register.count} fit")
         raw = raw.ljust(register.count, b"\0")
         return list(struct.unpack(f">{register.words}H", raw))
     values = value if isinstance(value, tuple) else (value,)
     if len(values) != register.count or isinstance(value, str):
-        raise ValueError(f"{register.name}: needs {register.count} numbers")
+        raise ValueError(f"{register.name}: {register.count} numbers expected")
     code = {"u16": "H", "u32": "I", "f32": "f"}[register.kind]
     try:
         raw = struct.pack(f">{register.count}{code}", *values)
@@ -214,7 +220,7 @@ def pack(register: Register, value: Value) -> list[int]:
 
 
 def unpack(register: Register, words: list[int]) -> Value:
-    """Value of one register's words."""
+    """Return the value of one register's words."""
     raw = struct.pack(f">{register.words}H", *words)
     if register.kind == "ascii":
         return raw.split(b"\0", 1)[0].decode("ascii", "replace")
@@ -224,7 +230,7 @@ def unpack(register: Register, words: list[int]) -> Value:
 
 
 def pack_window(start: int, words: int, values: dict[str, Value]) -> list[int]:
-    """Words of a window; names absent from `values` read 0."""
+    """Return the words of a window; registers that `values` does not name are 0."""
     window = [0] * words
     for name, value in values.items():
         register = BY_NAME[name]
@@ -234,23 +240,26 @@ def pack_window(start: int, words: int, values: dict[str, Value]) -> list[int]:
 
 
 def unpack_window(start: int, words: list[int]) -> dict[str, Value]:
-    """Values of all registers that lie wholly in the window."""
+    """Return the values of all registers that lie completely in the window, by name."""
     end = start + len(words)
     return {
-        r.name: unpack(r, words[r.address - start : r.address - start + r.words])
-        for r in MAP
-        if start <= r.address and r.address + r.words <= end
+        register.name: unpack(register, words[register.address - start :][: register.words])
+        for register in MAP
+        if start <= register.address and register.address + register.words <= end
     }
 
 
 def reordered(start: int, words: list[int]) -> list[int]:
-    """A window with the words of each 32-bit value exchanged, for a PLC that keeps the low word first; undone by itself."""
-    answer = list(words)
-    for r in MAP:
-        at = r.address - start
-        if r.kind in ("u32", "f32") and 0 <= at and at + r.words <= len(words):
-            answer[at], answer[at + 1] = words[at + 1], words[at]
-    return answer
+    """Return a window with the words of each 32-bit value swapped, for a PLC with the low word first.
+
+    Applied twice, it gives the window back.
+    """
+    swapped = list(words)
+    for register in MAP:
+        at = register.address - start
+        if register.kind in ("u32", "f32") and 0 <= at and at + register.words <= len(words):
+            swapped[at], swapped[at + 1] = words[at + 1], words[at]
+    return swapped
 
 
 def all_bits(flags: type[Bits]) -> Bits:
@@ -261,14 +270,14 @@ def all_bits(flags: type[Bits]) -> Bits:
 def named_bits(flags: type[Bits], register: int) -> Bits:
     """Return the bits of a register that have a name in `flags`; a bit without a name is ignored on purpose.
 
-    The only place that masks CONTROL, STATUS and FLAGS: a bit that is added to the enum passes everywhere.
+    This is the only place that masks CONTROL, STATUS and FLAGS: a bit added to the enum is known everywhere.
     """
     return flags(register & all_bits(flags))
 
 
 def number(values: dict[str, Value], name: str) -> int:
-    """A whole number out of an unpacked window."""
+    """Return a whole number of an unpacked window. Raises ValueError if it is of another type."""
     value = values[name]
     if not isinstance(value, int):
-        raise ValueError(f"{name} is no whole number")
+        raise ValueError(f"{name}: not a whole number")
     return value

@@ -1,4 +1,4 @@
-"""What the PLC reads for a state of the handshake, and what both windows say in return; pure."""
+"""Converts the handshake's state to the status window, and both windows back to a line state; pure."""
 
 from station import __version__
 from station.domain import SEGMENTS
@@ -21,52 +21,52 @@ from station.plc.port import Counts, Health, LineState
 
 _MAJOR, _MINOR = map(int, __version__.split(".")[:2])
 SW_VERSION = _MAJOR * 256 + _MINOR
-"""Value of the register of the same name."""
+"""Value of the register SW_VERSION."""
 
 
-def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, Value]:
-    """Values of the whole status window."""
-    shown = s.result if s.phase is Phase.SHOWN else None
+def values(state: State, health: Health, now_s: float, counts: Counts) -> dict[str, Value]:
+    """Return the values of the whole status window by register name; `now_s` is monotonic."""
+    shown = state.result if state.phase is Phase.SHOWN else None
     verdict = VerdictCode.NONE if shown is None else shown.verdict
     status = Status(0)
     for bit, on in (
-        (Status.ONLINE, s.phase is not Phase.OFFLINE),
-        (Status.READY, ready(s)),
-        (Status.TRIGGER_ACK, s.trigger_ack),
-        (Status.EXPOSURE_DONE, s.exposure_done),
-        (Status.BUSY, s.phase in (Phase.WIPED, Phase.BUSY)),
+        (Status.ONLINE, state.phase is not Phase.OFFLINE),
+        (Status.READY, ready(state)),
+        (Status.TRIGGER_ACK, state.trigger_ack),
+        (Status.EXPOSURE_DONE, state.exposure_done),
+        (Status.BUSY, state.phase in (Phase.WIPED, Phase.BUSY)),
         (Status.RESULT_VALID, shown is not None),
         (Status.OK, verdict is VerdictCode.OK),
         (Status.NOK, verdict is VerdictCode.NOK),
-        (Status.ERROR, s.error),
-        (Status.MISSED_TRIGGER, s.missed),
-        (Status.CMD_DONE, s.cmd_done),
-        (Status.MAINTENANCE, s.stuck or health.maintenance),
+        (Status.ERROR, state.error),
+        (Status.MISSED_TRIGGER, state.missed),
+        (Status.CMD_DONE, state.cmd_done),
+        (Status.MAINTENANCE, state.stuck or health.maintenance),
         (Status.FUNCTION_CHECK, health.function_check or verdict is VerdictCode.TEST),
         (Status.OUT_OF_SPEC, health.out_of_spec),
         (Status.FAILURE, health.failure),
     ):
         if on:
             status |= bit
-    in_service = s.offline is Offline.SERVICE and s.phase is Phase.OFFLINE
+    in_service = state.offline is Offline.SERVICE and state.phase is Phase.OFFLINE
     if in_service and health.bit:
         status = Status(health.bit)  # alone: an OK without RESULT_VALID releases nothing
     window: dict[str, Value] = {
         "STATUS": int(status),
-        "HEARTBEAT": s.heartbeat,
-        "SEQ_HEAD": s.sequence,
-        "SEQ_TAIL": s.sequence,
-        "ACK_TRIGGER_ID": s.last_id,
+        "HEARTBEAT": state.heartbeat,
+        "SEQ_HEAD": state.sequence,
+        "SEQ_TAIL": state.sequence,
+        "ACK_TRIGGER_ID": state.last_id,
         "VERDICT": int(verdict),
         "VERDICT_INV": 0xFFFF ^ int(verdict),
-        "ERROR_CODE": s.error_code or health.alarm,
+        "ERROR_CODE": state.error_code or health.alarm,
         "ACTIVE_RECIPE": health.recipe,
         "CONFIG_CRC": health.config_crc,
         "SEG_COUNT": SEGMENTS,
         "SEG_INVALID_MASK": ALL_SEGMENTS,
-        "MODE": 3 if in_service else 1 if s.phase is not Phase.OFFLINE else 2,
-        "OFFLINE_REASON": int(s.offline),
-        "CMD_ECHO": s.cmd_echo,
+        "MODE": 3 if in_service else 1 if state.phase is not Phase.OFFLINE else 2,
+        "OFFLINE_REASON": int(state.offline),
+        "CMD_ECHO": state.cmd_echo,
         "COUNT_OK": counts.ok,
         "COUNT_NOK": counts.nok,
         "COUNT_ERROR": counts.error,
@@ -83,8 +83,8 @@ def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, 
             "REASON": shown.reason,
             "SEG_NOK_MASK": shown.seg_nok_mask,
             "SEG_INVALID_MASK": shown.seg_invalid_mask,
-            "T_PROCESS_MS": s.process_ms,
-            "RESULT_AGE_10MS": min(0xFFFF, int((now_s - s.shown_s) * 100)),
+            "T_PROCESS_MS": state.process_ms,
+            "RESULT_AGE_10MS": min(0xFFFF, int((now_s - state.shown_s) * 100)),
             "SERIAL_ECHO": shown.trigger.serial,
             "FLAGS": int(shown.flags),
         }
@@ -98,7 +98,7 @@ def values(s: State, health: Health, now_s: float, counts: Counts) -> dict[str, 
 
 
 def decoded(command: dict[str, Value], status: dict[str, Value]) -> LineState:
-    """Return what the values of the command and of the status window say."""
+    """Return the line state from the values of the command window and of the status window."""
     return LineState(
         control=named_bits(Control, number(command, "CONTROL")),
         status=named_bits(Status, number(status, "STATUS")),

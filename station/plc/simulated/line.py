@@ -1,4 +1,7 @@
-"""A line PLC that runs the generated function block against any station, over Modbus TCP in either direction, with failures on demand."""
+"""A simulated PLC that runs the generated function block against a station, with faults on request.
+
+It uses Modbus TCP and is the client or the server of the station.
+"""
 
 import asyncio
 import random
@@ -34,11 +37,13 @@ from station.plc.wire.modbus import ModbusClient
 Outcome = TypeVar("Outcome")
 
 POLL_S = 0.004
+"""Time between two cycles of the PLC."""
 SILENCE_S = (0.05, 0.8)
+"""Shortest and longest time for which a faulty PLC does nothing."""
 
 
-class Knob(StrEnum):
-    """What may go wrong on the PLC's side."""
+class Fault(StrEnum):
+    """A fault that can be injected on the PLC's side."""
 
     EARLY_DROP = "early trigger drop"
     STUCK_ACK = "stuck ack"
@@ -51,27 +56,28 @@ class Knob(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """What the PLC made of one part."""
+    """The PLC's decision on one part."""
 
     accepted: bool
-    """The part flag is OK: all points of the rule held in one read."""
+    """True if the part passes: all points of the acceptance rule held in one read."""
     verdict: VerdictCode
     refused_by: str | None
-    """The first point of the rule that did not hold."""
+    """First point of the rule that did not hold; None: all held."""
     trigger_to_valid_ms: float | None
-    """None if no result came within the window."""
+    """Time from trigger to result; None if no result came in time."""
     inspection_id: int
     reason: int
     handshake_complete: bool
-    """Trigger acknowledged, result read and acknowledged, and RESULT_VALID seen to fall."""
+    """True if the trigger was acknowledged, the result read and acknowledged, and RESULT_VALID fell."""
     flags: Flags
     trigger_id: int
 
 
 class SimulatedLine:
-    """Drives one station part by part. `accept_simulated`: the demo line takes verdicts of an emulated camera."""
+    """A simulated PLC that drives one station part by part."""
 
     def __init__(self, windows: Windows, accept_simulated: bool, recipe: int = 1, seed: int = 0) -> None:
+        """`accept_simulated`: let parts pass on verdicts of an emulated camera; `recipe`: expected recipe."""
         self._windows = windows
         self._block = Block()
         self._v = self._block.v
@@ -80,15 +86,15 @@ class SimulatedLine:
         self._connected = False
         self._crc_known = False
         self._written: list[int] | None = None
-        self._knobs: frozenset[Knob] = frozenset()
+        self._faults: frozenset[Fault] = frozenset()
 
     @staticmethod
     def at(host: str, port: int, accept_simulated: bool, seed: int = 0) -> "SimulatedLine":
-        """A line whose PLC is the client of a station."""
+        """Return a line whose PLC is the client of the station at an address."""
         return SimulatedLine(RemoteWindows(lambda: ModbusClient(host, port)), accept_simulated, seed=seed)
 
     async def connect(self, timeout_s: float = 30.0) -> None:
-        """Connect, waiting for a station that is still starting. Raises LineError."""
+        """Connect; wait for a station that is still starting. Raises LineError."""
         until = time.monotonic() + timeout_s
         while True:
             try:
@@ -101,11 +107,11 @@ class SimulatedLine:
         self._connected = True
 
     async def close(self) -> None:
-        """Drop the connection."""
+        """Close the connection."""
         await self._windows.close()
 
     async def meanwhile(self, work: Awaitable[Outcome]) -> Outcome:
-        """Keep the heartbeat going until `work` is done."""
+        """Keep the heartbeat running until `work` is done and return its result."""
         task = asyncio.ensure_future(work)
         while not task.done():
             if self._connected:
@@ -114,14 +120,14 @@ class SimulatedLine:
         return task.result()
 
     async def wait_ready(self, timeout_s: float) -> bool:
-        """Hold ENABLE and the heartbeat until READY; False after the time."""
+        """Hold ENABLE and the heartbeat until READY is 1; return False if it was not in time."""
         return await self._until(
             lambda: bool(self._v.Window[0] & Status.READY) and number(self.status(), "MAP_VERSION") > 0,
             timeout_s,
         )
 
     async def command(self, code: CommandCode | int, arg: int = 0, timeout_s: float = 30.0) -> int | None:
-        """Have a command carried out; its echo, None if none came."""
+        """Have a command carried out and return CMD_ECHO; None if none came."""
         self._v.CommandCode, self._v.Argument, self._v.Extra = int(code), arg, int(Control.EXEC_COMMAND)
         done = await self._until(lambda: bool(self._v.Window[0] & Status.CMD_DONE), timeout_s)
         echo = number(self.status(), "CMD_ECHO") if done else None
@@ -130,19 +136,22 @@ class SimulatedLine:
         return echo
 
     def status(self) -> dict[str, Value]:
-        """The status window as read last."""
+        """Return the status window as last read."""
         return unpack_window(STATUS_START, self._v.Window)
 
     async def inspect(
-        self, serial: str, window_s: float = 4.0, golden: bool = False, knobs: frozenset[Knob] = frozenset()
+        self, serial: str, window_s: float = 4.0, golden: bool = False, faults: frozenset[Fault] = frozenset()
     ) -> Answer:
-        """One part: trigger, wait for the result inside the window, apply the rule, acknowledge."""
+        """Run the handshake for one part: trigger, wait for the result, apply the rule, acknowledge.
+
+        `window_s`: time within which the result must come; `golden`: the part is a master.
+        """
         v = self._v
         v.Serial, v.Golden, v.WindowTime = pack(BY_NAME["PART_SERIAL"], serial), golden, window_s
         if not self._crc_known and await self.wait_ready(window_s):
             v.Crc, self._crc_known = number(self.status(), "CONFIG_CRC"), True
-        self._knobs = knobs
-        v.Start, seen, triggered_s, valid_s, quiet = True, None, None, None, Knob.SILENCE not in knobs
+        self._faults = faults
+        v.Start, seen, triggered_s, valid_s, quiet = True, None, None, None, Fault.SILENCE not in faults
         silent_in = self._rng.choice((10, 30, 40, 50))
         until = time.monotonic() + 2 * window_s
         while time.monotonic() < until:
@@ -152,15 +161,15 @@ class SimulatedLine:
                 triggered_s = time.monotonic()
             if v.State == 50 and valid_s is None:
                 valid_s, seen = time.monotonic(), self.status()
-                if Knob.STORM in knobs:
-                    await self._weather()
+                if Fault.STORM in faults:
+                    await self._storm()
             if not quiet and v.State == silent_in:
                 quiet = True
                 await asyncio.sleep(self._rng.uniform(*SILENCE_S))
             if v.PartDone and v.State == 0:
                 break
             await asyncio.sleep(POLL_S)
-        self._knobs = frozenset()
+        self._faults = frozenset()
         return self._answer(
             seen, None if triggered_s is None or valid_s is None else (valid_s - triggered_s) * 1000
         )
@@ -192,14 +201,14 @@ class SimulatedLine:
             await asyncio.sleep(POLL_S)
         return False
 
-    async def _weather(self) -> None:
+    async def _storm(self) -> None:
         try:
             await self._windows.storm()
         except LineError:
             self._connected = False
 
     async def _cycle(self) -> None:
-        """One cycle of the PLC: read, run the block, write what changed."""
+        """Run one cycle of the PLC: read, run the block, write what changed."""
         v = self._v
         try:
             if not self._connected:
@@ -218,28 +227,28 @@ class SimulatedLine:
             self._connected = False
 
     async def _read(self) -> list[int]:
-        if Knob.TORN_READS in self._knobs:
+        if Fault.TORN_READS in self._faults:
             words = []
             for address in range(STATUS_START, STATUS_START + STATUS_WORDS):
                 words += await self._windows.read(address, 1)
                 await asyncio.sleep(0)
             return words
         words = await self._windows.read(STATUS_START, STATUS_WORDS)
-        if Knob.WORD_ORDER in self._knobs:
-            return [(w >> 8) | (w & 0xFF) << 8 for w in words]
+        if Fault.WORD_ORDER in self._faults:
+            return [(word >> 8) | (word & 0xFF) << 8 for word in words]
         return words
 
     async def _write(self, words: list[int]) -> None:
-        held = self._written
+        before = self._written
         if (
-            Knob.STUCK_ACK in self._knobs
-            and held is not None
-            and held[0] & Control.RESULT_ACK
+            Fault.STUCK_ACK in self._faults
+            and before is not None
+            and before[0] & Control.RESULT_ACK
             and not words[0] & Control.RESULT_ACK
         ):
             await asyncio.sleep(self._rng.uniform(*SILENCE_S))
-        if Knob.ID_REUSE in self._knobs:
+        if Fault.ID_REUSE in self._faults:
             words = [*words[:2], number(self.status(), "ACK_TRIGGER_ID"), *words[3:]]
         await self._windows.write(COMMAND_START, words[:COMMAND_WORDS])
-        if Knob.EARLY_DROP in self._knobs and words[0] & Control.TRIGGER:
+        if Fault.EARLY_DROP in self._faults and words[0] & Control.TRIGGER:
             await self._windows.write(COMMAND_START, [words[0] & ~Control.TRIGGER])

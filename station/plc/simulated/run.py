@@ -1,55 +1,52 @@
-"""A simulated line for people: parts at a pace, failures on demand, one printed row each."""
+"""Runs a simulated line from the command line: paced parts, faults on request, one printed row each."""
 
 import asyncio
 import random
 from dataclasses import dataclass
 
 from station.errors import LineError
-from station.plc.simulated.line import Answer, Knob, SimulatedLine
+from station.plc.simulated.line import Answer, Fault, SimulatedLine
 from station.plc.simulated.windows import OwnWindows, RemoteWindows, Windows
 from station.plc.wire.modbus import ModbusClient
 
-KNOB_SHARE = 0.1
-"""Share of the parts in which a named knob is turned."""
+FAULT_FRACTION = 0.1
+"""Fraction of the parts for which a requested fault is injected."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineRun:
-    """What is wanted."""
+    """Settings of one run."""
 
     mode: str
-    """Of the station: server or client."""
+    """Mode of the station: server or client."""
     host: str
     port: int
     parts: int
     pace_s: float
     accept_simulated: bool
-    knobs: tuple[str, ...]
+    faults: tuple[str, ...]
     seed: int
 
 
 async def run_line(run: LineRun) -> int:
-    """Print a row a part; parts that passed. Raises LineError."""
-    unknown = sorted(set(run.knobs) - set(Knob))
+    """Run the line, print a row for each part and return how many passed. Raises LineError."""
+    unknown = sorted(set(run.faults) - set(Fault))
     if unknown:
-        raise LineError(f"no such knob: {', '.join(unknown)}; there are: {', '.join(Knob)}")
+        raise LineError(f"unknown fault: {', '.join(unknown)}. Known faults: {', '.join(Fault)}")
     if run.parts < 1 or run.pace_s < 0:
-        raise LineError("--parts must be at least 1, --pace at least 0")
+        raise LineError("--parts must be at least 1 and --pace at least 0")
     windows: Windows = OwnWindows(run.host, run.port)
     if run.mode == "server":
         windows = RemoteWindows(lambda: ModbusClient(run.host, run.port))
-    line, rng, passed = (
-        SimulatedLine(windows, run.accept_simulated, seed=run.seed),
-        random.Random(run.seed),
-        0,
-    )
+    line = SimulatedLine(windows, run.accept_simulated, seed=run.seed)
+    rng, passed = random.Random(run.seed), 0
     await line.connect(timeout_s=5)
     try:
         for number in range(1, run.parts + 1):
-            knobs = frozenset(Knob(name) for name in run.knobs if rng.random() < KNOB_SHARE)
-            answer = await line.inspect(f"LINE-{number:06d}", knobs=knobs)
+            faults = frozenset(Fault(name) for name in run.faults if rng.random() < FAULT_FRACTION)
+            answer = await line.inspect(f"LINE-{number:06d}", faults=faults)
             passed += answer.accepted
-            print(_row(number, answer, knobs))
+            print(_row(number, answer, faults))
             await line.meanwhile(asyncio.sleep(run.pace_s))
     finally:
         await line.close()
@@ -57,8 +54,9 @@ async def run_line(run: LineRun) -> int:
     return passed
 
 
-def _row(number: int, answer: Answer, knobs: frozenset[Knob]) -> str:
+def _row(number: int, answer: Answer, faults: frozenset[Fault]) -> str:
     took = "-" if answer.trigger_to_valid_ms is None else f"{answer.trigger_to_valid_ms:.0f} ms"
-    turned = f"  [{', '.join(sorted(knobs))}]" if knobs else ""
+    injected = f"  [{', '.join(sorted(faults))}]" if faults else ""
     outcome = "pass" if answer.accepted else "reject"
-    return f"{number:4d}  {answer.verdict.name:5}  {outcome}  {took:>8}  {answer.refused_by or ''}{turned}".rstrip()
+    row = f"{number:4d}  {answer.verdict.name:5}  {outcome}  {took:>8}  {answer.refused_by or ''}{injected}"
+    return row.rstrip()

@@ -1,4 +1,4 @@
-"""The two windows as the simulated PLC reaches them: over the network (the station is the server) or in its own memory."""
+"""Access of the simulated PLC to the two windows: in the station over the network, or in its own memory."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -7,48 +7,48 @@ from station.plc.map.registers import STATUS_START, STATUS_WORDS
 from station.plc.wire.modbus import ModbusClient, ModbusServer
 
 STORM = 12
-"""Connections that come and go in a storm."""
+"""Number of connections that are opened and closed in a storm."""
 
 
 class Windows(Protocol):
-    """How the PLC reaches the two windows."""
+    """Access of the PLC to the two windows."""
 
     async def connect(self) -> None:
-        """Raises LineError."""
+        """Connect. Raises LineError."""
 
     async def read(self, address: int, count: int) -> list[int]:
-        """Registers, addresses as in the map. Raises LineError."""
+        """Return `count` registers from an address of the map. Raises LineError."""
 
     async def write(self, address: int, words: list[int]) -> None:
-        """Raises LineError."""
+        """Write registers. Raises LineError."""
 
     async def storm(self) -> None:
-        """Connect and vanish many times."""
+        """Connect and disconnect many times. Raises LineError."""
 
     async def close(self) -> None:
-        """End."""
+        """Close the connection or stop the server."""
 
 
 class RemoteWindows:
-    """The station is the server."""
+    """Windows in the memory of the station, which is the server."""
 
     def __init__(self, make: Callable[[], ModbusClient]) -> None:
         self._make, self._client = make, make()
 
     async def connect(self) -> None:
-        """Raises LineError."""
+        """Connect. Raises LineError."""
         await self._client.connect()
 
     async def read(self, address: int, count: int) -> list[int]:
-        """Raises LineError."""
+        """Return `count` registers. Raises LineError."""
         return await self._client.read(address, count)
 
     async def write(self, address: int, words: list[int]) -> None:
-        """Raises LineError."""
+        """Write registers. Raises LineError."""
         await self._client.write(address, words)
 
     async def storm(self) -> None:
-        """Connections that come and go, ours too."""
+        """Open and close many connections, the own one included. Raises LineError."""
         for _ in range(STORM):
             other = self._make()
             await other.connect()
@@ -58,12 +58,12 @@ class RemoteWindows:
         await self._client.connect()
 
     async def close(self) -> None:
-        """Drop the connection."""
+        """Close the connection."""
         self._client.close()
 
 
 class OwnWindows:
-    """The PLC is the server; the station writes into its memory."""
+    """Windows in the own memory; the PLC is the server into which the station writes."""
 
     def __init__(self, host: str, port: int) -> None:
         words = STATUS_START + STATUS_WORDS
@@ -75,7 +75,7 @@ class OwnWindows:
 
     @property
     def port(self) -> int:
-        """Port in use."""
+        """TCP port in use."""
         return self._server.port
 
     async def connect(self) -> None:
@@ -83,20 +83,20 @@ class OwnWindows:
         await self._server.start()
 
     async def read(self, address: int, count: int) -> list[int]:
-        """Our own memory, perhaps half-way through a copy."""
+        """Return registers of the own memory, which the station may be writing."""
         return await self._server.read(address, count)
 
     async def write(self, address: int, words: list[int]) -> None:
-        """Into our own memory."""
+        """Write to the own memory."""
         await self._server.write(address, words)
 
     async def storm(self) -> None:
-        """The PLC's server goes and comes back; its memory keeps what was there."""
-        kept = await self._server.read(0, self._words)
+        """Stop the server and start it again; its memory keeps its contents."""
+        contents = await self._server.read(0, self._words)
         await self._server.stop()
         self._server = self._at(self._server.port)
         await self._server.start()
-        await self._server.write(0, kept)
+        await self._server.write(0, contents)
 
     async def close(self) -> None:
         """Stop the server."""

@@ -122,7 +122,7 @@ class _Peer(ServerRequestHandler):
 
 
 def _drop(connection: TransactionManager) -> None:
-    """Close a connection at once, without waiting for a TLS peer that may be gone."""
+    """Close a connection at once, without waiting for a TLS peer that may have disappeared."""
     transport = connection.transport
     connection.close()
     if isinstance(transport, asyncio.WriteTransport):

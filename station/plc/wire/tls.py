@@ -1,4 +1,4 @@
-"""TLS contexts for Modbus/TCP Security: TLS 1.2 or newer, each side checks the certificate of the other."""
+"""TLS contexts for Modbus/TCP Security: TLS 1.2 or newer, each side checks the other's certificate."""
 
 import ssl
 
@@ -10,7 +10,7 @@ Tls = ssl.SSLContext | None
 
 
 def server_context(settings: TlsSettings) -> ssl.SSLContext:
-    """Return the server's context, which refuses peers without a trusted certificate. Raises SettingsError."""
+    """Return the server's context; it refuses peers without a trusted certificate. Raises SettingsError."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.verify_mode = ssl.CERT_REQUIRED
     return _loaded(context, settings)
