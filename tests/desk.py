@@ -1,4 +1,4 @@
-"""The part of an engine that windows talk to, without a line: real journal, accounts, settings and channel."""
+"""The part of an engine that serves windows, without a line: real journal, accounts, settings and channel."""
 
 import threading
 import time
@@ -9,7 +9,7 @@ from station.camera.reconnecting import ReconnectingCamera
 from station.channel.requests import Answer, EndService, Message, Request
 from station.channel.zeromq import RequestClient, RequestServer
 from station.domain import Frame
-from station.engine.active_settings import Released
+from station.engine.active_settings import ActiveSettings
 from station.engine.operator_requests import OperatorRequests
 from station.engine.orders import Order, OrderQueue, Reload, UseSettings
 from station.engine.settings_use import use_settings
@@ -47,17 +47,17 @@ class StubCamera:
 
 
 class Desk:
-    """Answers on the channel of a settings file; a thread stands for the cycle between parts."""
+    """Answers on the channel of a settings file; a thread takes the place of the cycle between parts."""
 
     def __init__(self, path: Path, turns: bool = True) -> None:
-        """`turns`: whether the cycle comes to changed settings."""
+        """`turns`: the cycle takes changed settings."""
         self.path, self.turns, self.given = path, turns, list[Order]()
         self.used: list[Loaded] = []
         self._queue, self._stop = OrderQueue(), threading.Event()
-        self.released = Released(load(path), lambda: load(path), StubCamera)
-        self._camera = ReconnectingCamera(self.released.camera(), 1.0)
-        self._server = RequestServer(self.released.settings.channel)
-        self.requests = OperatorRequests(self._server, path, self.released, self._queue.put)
+        self.active = ActiveSettings(load(path), lambda: load(path), StubCamera)
+        self._camera = ReconnectingCamera(self.active.make_camera(), 1.0)
+        self._server = RequestServer(self.active.settings.channel)
+        self.requests = OperatorRequests(self._server, path, self.active, self._queue.put)
         self._thread = threading.Thread(target=self._run, name="turns")
         self._thread.start()
 
@@ -71,17 +71,23 @@ class Desk:
                 order = waiting.pop(0)
                 if order.ticket.take():
                     if isinstance(order, UseSettings):
-                        use_settings(order, self.released, self._camera, 1, self.used.append)
+                        use_settings(
+                            order,
+                            active=self.active,
+                            camera=self._camera,
+                            number=1,
+                            use=self.used.append,
+                        )
                     else:
-                        self.released.accept(self.released.changed(1))
+                        self.active.activate(self.active.prepare_file(1))
                         order.ticket.answer("")
 
     def knows(self, name: str, level: Level) -> None:
-        """A user with the one PIN; before the first one an administrator is made."""
-        folder = self.released.settings.archive.folder
+        """Add a user with the common PIN; an administrator is added before the first one."""
+        folder = self.active.settings.archive.folder
         if not users(folder):
-            save_user(folder, "Root", "Root", Level.ADMIN, PIN)
-        save_user(folder, "Root", name, level, PIN)
+            save_user(folder, "Root", level=Level.ADMIN, pin=PIN, by="Root")
+        save_user(folder, name, level=level, pin=PIN, by="Root")
 
     def close(self) -> None:
         self.requests.close()
@@ -91,7 +97,7 @@ class Desk:
 
 
 class PlainWindow:
-    """A window without pages: asks, and waits for the answer."""
+    """A window without pages: sends requests and waits for the answers."""
 
     def __init__(self, path: Path) -> None:
         self._client, self._last, self.token = RequestClient(load(path).channel), 0, ""

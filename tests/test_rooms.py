@@ -25,19 +25,11 @@ NAMED_ROOMS = (
     "models",
     "station/panel",
     "station/plc",
+    "station/engine",
+    "station/channel",
+    "station/camera",
+    "station/journal",
     "station/__main__.py",
-    *(
-        f"station/engine/{name}.py"
-        for name in (
-            "cycle",
-            "health",
-            "plc_result",
-            "procedure",
-            "recording",
-            "service_mode",
-            "status_report",
-        )
-    ),
 )
 NAMED_ROOMS += tuple(f"station/{name}.py" for name in ("domain", "defects", "records", "record_versions"))
 NAMED_ROOMS += tuple(f"station/{name}" for name in ("settings", "files", "vision", "classify", "inspection"))

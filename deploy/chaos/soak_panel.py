@@ -139,7 +139,6 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
     status = StatusEvent(
         at_s=now_s,
         started_s=now_s,
-        reloaded_s=0.0,
         camera_there=True,
         camera_message="",
         origin=Origin.SIMULATED,

@@ -26,7 +26,7 @@ from deploy.demo.station import running, shipped_parts, station_toml
 from deploy.demo.summary import DemoPart
 from station.channel.requests import HoldService
 from station.journal.accounts import save_user
-from station.journal.review_writer import give
+from station.journal.review_writer import save_review
 from station.journal.reviews import Opinion
 from station.journal.users import Level
 from station.panel.app import open_window
@@ -164,7 +164,7 @@ def _save_users(window: Window) -> None:
         ("Quentin Quality", Level.QUALITY, "2345"),
         ("Sam Setter", Level.SETTER, "3456"),
     ):
-        save_user(folder, "Ada Admin", name, level, pin)
+        save_user(folder, name, level=level, pin=pin, by="Ada Admin")
 
 
 def _give_reviews(window: Window) -> None:
@@ -172,7 +172,7 @@ def _give_reviews(window: Window) -> None:
     folder = received.folder
     nok = [part.record.inspection_id for part in received.parts if part.record.verdict == "NOK"]
     for number in nok[-2:]:
-        give(
+        save_review(
             folder,
             "Quentin Quality",
             may_second=True,
@@ -181,7 +181,9 @@ def _give_reviews(window: Window) -> None:
             opinion=Opinion.RIGHT,
             comment="seen under the microscope",
         )
-        give(folder, "Ada Admin", may_second=True, inspection_id=number, verdict="NOK", opinion=Opinion.RIGHT)
+        save_review(
+            folder, "Ada Admin", may_second=True, inspection_id=number, verdict="NOK", opinion=Opinion.RIGHT
+        )
 
 
 def _show(window: Window, view: str, page: PageKey, tab: int) -> None:

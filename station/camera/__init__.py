@@ -1,1 +1,1 @@
-"""Cameras behind one port."""
+"""Cameras of all makes, behind one interface."""

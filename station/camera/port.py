@@ -1,4 +1,4 @@
-"""What the cycle needs of a camera, whatever the make."""
+"""What the cycle needs of a camera, independent of the make."""
 
 from typing import Protocol
 
@@ -6,25 +6,25 @@ from station.domain import Frame
 
 
 class Camera(Protocol):
-    """A camera that gives one frame a trigger. Lost once, it must be opened again."""
+    """A camera that gives one frame per trigger; after a loss it must be opened again."""
 
     def open(self) -> None:
-        """Connect and configure; again after a loss. Raises CameraLost saying what is absent."""
+        """Connect and configure, also after a loss. Raises CameraLost."""
 
     def grab(self) -> Frame:
-        """One frame of the part in view.
+        """Return one frame of the part in view.
 
         Raises FrameTimeout, FrameDamaged (the camera stays open) or CameraLost (open it again).
         """
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
-        """For the next frames, until it is opened again; None: as the settings say. Recorded pictures stay as they are.
+        """Set exposure and gain until the camera is opened again; None: as in the settings.
 
-        Raises CameraLost.
+        Recorded images are not affected. Raises CameraLost.
         """
 
     def alive(self) -> bool:
-        """Whether the open camera still answers; cheap, for idle times."""
+        """Return whether the open camera still answers; cheap enough for idle times."""
 
     def close(self) -> None:
-        """Let go of the device; harmless if it is not open."""
+        """Release the device; does nothing if it is not open."""

@@ -1,4 +1,4 @@
-"""Basler cameras through pypylon, real or emulated; the only file that imports it."""
+"""Basler cameras, real or emulated; the only file that imports pypylon."""
 
 from datetime import UTC, datetime
 
@@ -10,78 +10,83 @@ from station.errors import CameraLost, FrameDamaged, FrameTimeout
 from station.settings.camera import PylonSettings
 
 SOURCES = {"software": "Software", "line1": "Line1"}
+"""GenICam name of each trigger source."""
 
 
 class PylonCamera:
-    """One camera, found by device class and serial: an unfiltered search would ask every network interface."""
+    """A Basler camera, found by device class and serial: a wider search would query all interfaces."""
 
     def __init__(self, settings: PylonSettings) -> None:
         self._settings = settings
         self._camera: pylon.InstantCamera | None = None
 
     def open(self) -> None:
-        """Connect and configure; again after a loss. Raises CameraLost."""
+        """Connect and configure, also after a loss. Raises CameraLost."""
         self.close()
-        s = self._settings
-        wanted = pylon.DeviceInfo()
-        wanted.SetDeviceClass(s.device_class)
-        wanted.SetSerialNumber(s.serial)
+        settings = self._settings
+        info = pylon.DeviceInfo()
+        info.SetDeviceClass(settings.device_class)
+        info.SetSerialNumber(settings.serial)
         camera = None
         try:
-            camera = pylon.InstantCamera(pylon.TlFactory.GetInstance().CreateFirstDevice(wanted))
+            camera = pylon.InstantCamera(pylon.TlFactory.GetInstance().CreateFirstDevice(info))
             camera.Open()
-            _configure(camera, s)
+            _configure(camera, settings)
             camera.StartGrabbing(pylon.GrabStrategy_OneByOne)
         except genicam.GenericException as error:
             if camera is not None:
                 _release(camera)
-            raise CameraLost(
-                f"camera {s.serial} ({s.device_class}): {_first_line(error)}; check power, cable and camera.serial"
-            ) from None
+            name = f"camera {settings.serial} ({settings.device_class})"
+            raise CameraLost(f"{name}: {_first_line(error)}; check power, cable and camera.serial") from None
         self._camera = camera
 
     def grab(self) -> Frame:
-        """One frame, by software trigger or at the next hardware edge; frames from before are dropped."""
-        camera, s = self._camera, self._settings
+        """Return one frame, by software trigger or the next hardware edge; earlier frames are dropped.
+
+        Raises CameraLost, FrameTimeout, FrameDamaged.
+        """
+        camera, settings = self._camera, self._settings
         if camera is None:
-            raise CameraLost(f"camera {s.serial} is not open")
+            raise CameraLost(f"camera {settings.serial} is not open")
         try:
             while camera.GetGrabResultWaitObject().Wait(0):
                 camera.RetrieveResult(0, pylon.TimeoutHandling_Return).Release()
-            if s.trigger == "software":
-                if not camera.WaitForFrameTriggerReady(s.timeout_ms, pylon.TimeoutHandling_Return):
-                    raise FrameTimeout(f"camera {s.serial}: not ready for a trigger within {s.timeout_ms} ms")
+            if settings.trigger == "software":
+                if not camera.WaitForFrameTriggerReady(settings.timeout_ms, pylon.TimeoutHandling_Return):
+                    raise FrameTimeout(
+                        f"camera {settings.serial}: not ready for a trigger within {settings.timeout_ms} ms"
+                    )
                 camera.ExecuteSoftwareTrigger()
-            result = camera.RetrieveResult(s.timeout_ms, pylon.TimeoutHandling_Return)
+            result = camera.RetrieveResult(settings.timeout_ms, pylon.TimeoutHandling_Return)
             with result:
                 return self._frame(camera, result)
         except genicam.GenericException as error:
             self.close()
-            raise CameraLost(f"camera {s.serial}: {_first_line(error)}") from None
+            raise CameraLost(f"camera {settings.serial}: {_first_line(error)}") from None
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
-        """For the next frames, within what the camera can do; None: as the settings say. Raises CameraLost."""
-        s = self._settings
+        """Set exposure and gain within the camera's range; None: as in the settings. Raises CameraLost."""
+        settings = self._settings
         if self._camera is None:
-            raise CameraLost(f"camera {s.serial} is not open")
+            raise CameraLost(f"camera {settings.serial} is not open")
         try:
             for node, value in (
-                (self._camera.ExposureTime, s.exposure_us if exposure_us is None else exposure_us),
-                (self._camera.Gain, s.gain_db if gain_db is None else gain_db),
+                (self._camera.ExposureTime, settings.exposure_us if exposure_us is None else exposure_us),
+                (self._camera.Gain, settings.gain_db if gain_db is None else gain_db),
             ):
                 node.Value = min(max(value, node.Min), node.Max)
         except genicam.GenericException as error:
             self.close()
-            raise CameraLost(f"camera {s.serial}: {_first_line(error)}") from None
+            raise CameraLost(f"camera {settings.serial}: {_first_line(error)}") from None
 
     def alive(self) -> bool:
-        """Whether the device is there, grabbing, and answers a read of a node."""
+        """Return whether the device is connected, grabs, and answers the read of a node."""
         camera = self._camera
         if camera is None:
             return False
         try:
-            there = not camera.IsCameraDeviceRemoved() and camera.IsGrabbing()
-            return bool(there and camera.Width.Value == self._settings.width_px)
+            connected = not camera.IsCameraDeviceRemoved() and camera.IsGrabbing()
+            return bool(connected and camera.Width.Value == self._settings.width_px)
         except genicam.GenericException:
             return False
 
@@ -92,45 +97,47 @@ class PylonCamera:
             self._camera = None
 
     def _frame(self, camera: pylon.InstantCamera, result: pylon.GrabResult) -> Frame:
-        s = self._settings
+        settings = self._settings
+        name = f"camera {settings.serial}"
         if not result.IsValid():
             if not camera.IsGrabbing() or camera.IsCameraDeviceRemoved():
                 self.close()
-                raise CameraLost(f"camera {s.serial}: stopped grabbing")
+                raise CameraLost(f"{name}: stopped grabbing")
             _flush(camera)
-            raise FrameTimeout(f"camera {s.serial}: no frame within {s.timeout_ms} ms")
+            raise FrameTimeout(f"{name}: no frame within {settings.timeout_ms} ms")
         if not result.GrabSucceeded():
             raise FrameDamaged(
-                f"camera {s.serial}: frame incompletely grabbed ({result.GetErrorDescription() or 'no description'})"
+                f"{name}: frame incomplete ({result.GetErrorDescription() or 'no description'})"
             )
-        if (result.Width, result.Height) != (s.width_px, s.height_px):
-            size = f"{result.Width} x {result.Height} px, set are {s.width_px} x {s.height_px}"
-            raise FrameDamaged(f"camera {s.serial}: frame is {size}", wrong_size=True)
+        if (result.Width, result.Height) != (settings.width_px, settings.height_px):
+            expected = f"{settings.width_px} x {settings.height_px}"
+            size = f"{result.Width} x {result.Height} px instead of {expected} px"
+            raise FrameDamaged(f"{name}: frame is {size}", wrong_size=True)
         if result.GetPixelType() != pylon.PixelType_Mono8:
-            raise FrameDamaged(f"camera {s.serial}: frame is not Mono8")
-        return Frame(np.array(result.Array, np.uint8), datetime.now(UTC), s.serial, s.origin)
+            raise FrameDamaged(f"{name}: frame is not Mono8")
+        return Frame(np.array(result.Array, np.uint8), datetime.now(UTC), settings.serial, settings.origin)
 
 
-def _configure(camera: pylon.InstantCamera, s: PylonSettings) -> None:
-    """The one place where features are set; emulator and ace 2 share the names."""
-    for node, value in ((camera.WidthMax, s.width_px), (camera.HeightMax, s.height_px)):
+def _configure(camera: pylon.InstantCamera, settings: PylonSettings) -> None:
+    """Set all features; emulator and ace 2 use the same names."""
+    for node, value in ((camera.WidthMax, settings.width_px), (camera.HeightMax, settings.height_px)):
         if genicam.IsWritable(node) and node.Value < value:
             node.Value = value
     camera.PixelFormat.Value = "Mono8"
-    camera.Width.Value = s.width_px
-    camera.Height.Value = s.height_px
+    camera.Width.Value = settings.width_px
+    camera.Height.Value = settings.height_px
     camera.ExposureAuto.TrySetValue("Off")
     camera.GainAuto.TrySetValue("Off")
-    camera.ExposureTime.Value = s.exposure_us
-    camera.Gain.Value = s.gain_db
+    camera.ExposureTime.Value = settings.exposure_us
+    camera.Gain.Value = settings.gain_db
     camera.TriggerSelector.Value = "FrameStart"
     camera.TriggerMode.Value = "On"
-    camera.TriggerSource.Value = SOURCES[s.trigger]
+    camera.TriggerSource.Value = SOURCES[settings.trigger]
     camera.MaxNumBuffer.Value = 5
 
 
 def _flush(camera: pylon.InstantCamera) -> None:
-    """A frame that comes late must not be taken for the next part's."""
+    """Discard a frame that comes late, so that it is not taken for that of the next part."""
     camera.StopGrabbing()
     camera.StartGrabbing(pylon.GrabStrategy_OneByOne)
 

@@ -1,4 +1,4 @@
-"""A camera that is opened, watched while idle and opened again after a loss; every grab ends in a frame or a reason."""
+"""A camera that is opened again after a loss; every grab gives a frame or the reason why there is none."""
 
 import logging
 import time
@@ -12,7 +12,7 @@ from station.errors import CameraLost, FrameDamaged, FrameTimeout
 log = logging.getLogger("weldgate.camera")
 
 ALIVE_S = 1.0
-"""Between two questions whether it still answers."""
+"""Time between two checks whether the camera still answers."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,40 +30,40 @@ class Grab:
 
 
 class ReconnectingCamera:
-    """Use from one thread."""
+    """A camera that is kept open. Use from one thread."""
 
     def __init__(self, camera: Camera, reconnect_s: float) -> None:
-        """`reconnect_s`: pause between two attempts to open it."""
+        """`reconnect_s`: time between two attempts to open it."""
         self._camera, self._reconnect_s = camera, reconnect_s
         self._tried_s = self._alive_s = -1e9
         self._adjusted: tuple[float | None, float | None] | None = None
-        """Exposure and gain set by hand."""
-        self.there = False
-        self.message = "camera not opened yet"
-        """Why it is not there; empty if it is."""
+        """Exposure and gain set by hand; None: those of the settings."""
+        self.connected = False
+        self.message = "the camera is not opened yet"
+        """Reason why the camera is not connected; empty if it is."""
 
-    def look_after(self) -> None:
-        """Open it if it is time to; ask it, while idle, whether it still answers."""
-        now = time.monotonic()
-        if self.there and now - self._alive_s >= ALIVE_S:
-            self._alive_s = now
+    def keep_open(self) -> None:
+        """Open the camera if it is time; check now and then whether it still answers."""
+        now_s = time.monotonic()
+        if self.connected and now_s - self._alive_s >= ALIVE_S:
+            self._alive_s = now_s
             if not self._camera.alive():
-                self._lost("camera stopped answering")
-        if not self.there and now - self._tried_s >= self._reconnect_s:
+                self._lost("the camera stopped answering")
+        if not self.connected and now_s - self._tried_s >= self._reconnect_s:
             try:
                 self._camera.open()
             except CameraLost as error:
                 self._lost(str(error))
             else:
                 log.info("camera opened")
-                self.there, self.message, self._alive_s = True, "", now
+                self.connected, self.message, self._alive_s = True, "", now_s
             self._tried_s = time.monotonic()
 
     def grab(self) -> Grab:
-        """Take a frame; a camera that is lost or fails is a reason, not an exception."""
+        """Take a frame; a lost or failing camera gives a reason, not an exception."""
         start = time.perf_counter()
         frame, reason = None, None
-        if not self.there:
+        if not self.connected:
             reason = Reason.CAMERA_LOST
         else:
             try:
@@ -77,28 +77,31 @@ class ReconnectingCamera:
             except CameraLost as error:
                 self._lost(str(error))
                 reason = Reason.CAMERA_LOST
-            except Exception:  # the part must get its record: any fault is "no picture"
-                log.exception("the camera ended with a fault")
-                self._lost("camera ended with a fault, see the log")
+            except Exception:  # the part needs its record: any fault means "no image"
+                log.exception("the camera failed with an error")
+                self._lost("the camera failed with an error: see the log")
                 reason = Reason.INTERNAL
         return Grab(frame, reason, (time.perf_counter() - start) * 1000)
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
-        """For the next frames; None: as the settings say."""
-        wanted = None if exposure_us is None and gain_db is None else (exposure_us, gain_db)
-        if not self.there or wanted == self._adjusted:
+        """Set exposure and gain for the next frames; None: as in the settings."""
+        adjusted = None if exposure_us is None and gain_db is None else (exposure_us, gain_db)
+        if not self.connected or adjusted == self._adjusted:
             return
         try:
             self._camera.adjust(exposure_us, gain_db)
-            self._adjusted = wanted
+            self._adjusted = adjusted
         except CameraLost as error:
             self._lost(str(error))
-        except Exception:  # it is opened again, as the settings say
-            log.exception("the camera ended with a fault")
-            self._lost("camera ended with a fault, see the log")
+        except Exception:  # it is opened again with the settings
+            log.exception("the camera failed with an error")
+            self._lost("the camera failed with an error: see the log")
 
-    def exchange(self, camera: Camera) -> bool:
-        """Another one in its place: its settings have changed. False if it cannot be opened so; then the old one stays."""
+    def replace(self, camera: Camera) -> bool:
+        """Use another camera instead, as its settings have changed.
+
+        Returns False if it cannot be opened; then the previous one stays.
+        """
         self._camera.close()
         try:
             camera.open()
@@ -106,17 +109,17 @@ class ReconnectingCamera:
             log.error("%s", error)
             camera.close()
             self._tried_s = -1e9
-            self._lost("camera is opened again with the settings before")
+            self._lost("the camera is opened again with the previous settings")
             return False
         self._camera, self._adjusted = camera, None
-        self.there, self.message, self._alive_s = True, "", time.monotonic()
+        self.connected, self.message, self._alive_s = True, "", time.monotonic()
         return True
 
     def _lost(self, message: str) -> None:
         if message != self.message:
             log.warning("%s", message)
-        self.there, self.message, self._adjusted = False, message, None
+        self.connected, self.message, self._adjusted = False, message, None
 
     def close(self) -> None:
-        """Let go of the device."""
+        """Release the device."""
         self._camera.close()

@@ -1,4 +1,4 @@
-"""Recorded frames from a folder, in the order of their names, once each."""
+"""Recorded frames from a folder, each once, in the order of their names."""
 
 from datetime import UTC, datetime
 
@@ -9,30 +9,30 @@ from station.settings.camera import ReplaySettings
 
 
 class ReplayCamera:
-    """A camera whose parts are files; the PLC reads TEST for them."""
+    """A camera whose frames are image files; the PLC reads TEST for them."""
 
     def __init__(self, settings: ReplaySettings) -> None:
         self._folder = settings.folder
         self._files: list[str] | None = None
 
     def open(self) -> None:
-        """List the folder; goes on where it stood if opened again. Raises CameraLost."""
+        """List the folder; if opened again, continue at the next file. Raises CameraLost."""
         if self._files is not None:
             if not self._files:
                 raise CameraLost(f"{self._folder}: no more images")
             return
         try:
-            names = sorted(p.name for p in self._folder.iterdir() if p.suffix.lower() in SUFFIXES)
+            names = sorted(path.name for path in self._folder.iterdir() if path.suffix.lower() in SUFFIXES)
         except OSError as error:
             raise CameraLost(
                 f"{self._folder}: cannot be read ({error.strerror}); set camera.folder"
             ) from None
         if not names:
-            raise CameraLost(f"{self._folder}: holds no images; set camera.folder")
+            raise CameraLost(f"{self._folder}: no images in this folder; set camera.folder")
         self._files = names
 
     def grab(self) -> Frame:
-        """The next file. Raises FrameDamaged for an unreadable one, CameraLost after the last."""
+        """Return the next file. Raises FrameDamaged if it cannot be read, CameraLost after the last one."""
         if not self._files:
             raise CameraLost(f"{self._folder}: no more images")
         path = self._folder / self._files.pop(0)
@@ -42,11 +42,11 @@ class ReplayCamera:
             raise FrameDamaged(str(error)) from None
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
-        """Recorded pictures stay as they are."""
+        """Do nothing: recorded images are not affected."""
 
     def alive(self) -> bool:
-        """Whether an image is left."""
+        """Return whether an image is left."""
         return bool(self._files)
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Do nothing: no file is held open."""

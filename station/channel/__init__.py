@@ -1,1 +1,1 @@
-"""The local channel between engine and window: messages and transport."""
+"""Local channel between engine and window: messages and transport."""

@@ -1,4 +1,4 @@
-"""What the engine tells: frozen messages, defined once."""
+"""Events of the engine for the window: frozen messages, defined once."""
 
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -12,90 +12,95 @@ from station.plc.port import LineState
 from station.records import Record
 
 STATUS_LOST_S = 2.0
-"""A status older than this says nothing: they come several times a second."""
-SETTING_UP = -1
-"""Number of a picture that is not judged; a part whose record could not be written has 0."""
+"""Age from which a status is out of date; a new one comes several times per second."""
+SETUP_IMAGE = -1
+"""Inspection id of a setup image; a part whose record could not be written has 0."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StatusEvent:
-    """How the station stands; several a second."""
+    """State of the station, sent several times per second."""
 
     at_s: float
-    """Monotonic time at which it was sent: one clock for all processes of the machine."""
+    """Monotonic time of sending; all processes of the machine share this clock."""
     started_s: float
     """Monotonic time of the engine's start."""
-    reloaded_s: float
-    """Epoch seconds: `asked_s` of the last request to read the settings again that was dealt with, or 0."""
     camera_there: bool
     camera_message: str
-    """Why the camera is not there, or empty."""
+    """Reason why the camera is not connected, or empty."""
     origin: Origin
     line: LineState
-    """What the PLC reads, decoded."""
+    """State of the line, decoded from both windows."""
     command_words: tuple[int, ...]
+    """Raw words of the command window, for the register table of the page Line only."""
     status_words: tuple[int, ...]
-    """Raw words of both windows, for the table of registers on the page Line alone."""
+    """Raw words of the status window, for the register table of the page Line only."""
     alarms: tuple[int, ...] = ()
-    """Codes of what lasts now."""
+    """Codes of the active alarms, the most severe first."""
     recipe: int = 1
     config_crc: int = 0
     service: str = ""
-    """Who works on the station, or empty."""
+    """User in service mode, or empty."""
     type: Literal["status"] = "status"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PartEvent:
-    """One part judged, recorded and published."""
+    """A part that was judged, recorded and published."""
 
     at_s: float
-    """Monotonic time at which it was sent."""
+    """Monotonic time of sending."""
     record: Record
     novel: bool
-    """The picture is unlike all training images: its verdict deserves less trust, and the line a look."""
+    """True if the image is unlike all training images; its verdict is less reliable."""
     drift: Drift | None
-    """How far the last parts look from the line's reference; None: not watched, or no part was judged yet."""
+    """Drift of the last parts from the line's reference; None: not monitored, or no part was judged yet."""
     told: VerdictCode
-    """What the PLC reads: ERROR also if the result came too late, TEST for a master or while the station may not be trusted, NONE for a
-    test picture."""
+    """Verdict that the PLC reads.
+
+    ERROR also if the result came too late, TEST for a master or while the station is not trusted, NONE for a
+    test image.
+    """
     record_ms: float
+    """Time that writing the record took."""
     publish_ms: float
+    """Time that publishing the result took."""
     type: Literal["part"] = "part"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Preview:
-    """Picture for the window: may be dropped."""
+    """Small images of an inspection for the window; may be dropped."""
 
     inspection_id: int
-    """`SETTING_UP` for a setting-up picture."""
+    """Number of the inspection, or `SETUP_IMAGE`."""
     scale: float
-    """Preview pixels per frame pixel."""
+    """Size of the preview: preview pixels per frame pixel."""
     origin_px: tuple[int, int]
-    """Frame pixel (x, y) of the preview's corner."""
+    """Upper left corner of the preview in frame pixels (x, y)."""
     frame_jpeg: bytes
     strip_jpeg: bytes
-    """Empty if no ring was found."""
+    """The strip; empty if no ring was found."""
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(ser_json_bytes="base64", val_json_bytes="base64")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LookEvent:
-    """One setting-up picture in numbers; not judged, not recorded."""
+class SetupImageEvent:
+    """Measured quality of a setup image, which is neither judged nor recorded."""
 
     exposure_us: float | None
     gain_db: float | None
     mean_dn: float
-    """Of the whole frame, or of the strip if a ring was found."""
+    """Mean brightness of the strip, or of the whole frame if no ring was found; the other values likewise."""
     saturated_share: float
     sharpness: float
     histogram: tuple[int, ...]
-    """Pixels in 64 classes of grey level, of the same place."""
+    """Numbers of pixels in 64 equal bins of the grey level."""
     ring: Ring | None
     problem: str = ""
-    """Why there is no picture or no ring."""
+    """Reason why there is no image or no ring, or empty."""
     type: Literal["look"] = "look"
 
 
-Event = StatusEvent | PartEvent | LookEvent
+Event = StatusEvent | PartEvent | SetupImageEvent
+"""An event of the engine."""

@@ -1,7 +1,7 @@
-"""What a window may ask of the engine, and how the engine answers: frozen messages, defined once.
+"""Requests of windows to the engine and its answers: frozen messages, defined once.
 
-A message carries the token that its login was given; who asks and what they may do is known to the engine
-alone. A message that is too old is refused: its sender has seen that nothing came.
+A message carries the token of its login; only the engine knows the user and the rights behind it. A message
+that is too old is refused: its sender has already seen that there was no answer.
 """
 
 from dataclasses import dataclass, field
@@ -13,21 +13,23 @@ from station.journal.reviews import Marks, Opinion
 from station.journal.users import Level
 
 TOO_OLD = "the request came too late: nothing was done"
-"""Refusal of a request whose sender has seen that nothing came."""
-
+"""Refusal of a request that is too old."""
 FAULT = "internal error: see the engine's log"
-"""Refusal of a request that ended in a fault of the engine."""
+"""Refusal of a request that failed because of a fault in the engine."""
 MIN_REASON = 5
-"""Characters that the reason of a change needs at least."""
+"""Minimum number of characters of the reason of a change."""
 
 Name = Annotated[str, Field(max_length=100)]
+"""A name of limited length."""
 Text = Annotated[str, Field(max_length=1000)]
+"""A text of limited length."""
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+"""A finite number."""
 
 
 @dataclass(frozen=True, slots=True)
 class LogIn:
-    """Log in by name and PIN; at a station without users this makes the first administrator."""
+    """Request to log in by name and PIN; at a station without users this makes the first administrator."""
 
     name: Name
     pin: Annotated[str, Field(max_length=20)] = field(repr=False)
@@ -36,15 +38,16 @@ class LogIn:
 
 @dataclass(frozen=True, slots=True)
 class StayLoggedIn:
-    """Renew the login: the window is alive; `touched`: somebody used it since the last renewal."""
+    """Request to renew a login, which shows that the window is alive."""
 
     touched: bool
+    """True if a person has used the window since the last renewal."""
     type: Literal["stay logged in"] = "stay logged in"
 
 
 @dataclass(frozen=True, slots=True)
 class LogOut:
-    """End the login, and with it service mode."""
+    """Request to end a login and its service mode."""
 
     why: Literal["asked to", "idle", "window closed"] = "asked to"
     type: Literal["log out"] = "log out"
@@ -52,7 +55,7 @@ class LogOut:
 
 @dataclass(frozen=True, slots=True)
 class SaveUser:
-    """Add a user, or give a known one another level and PIN."""
+    """Request to add a user, or to change the level and PIN of a user."""
 
     name: Name
     level: Level
@@ -62,7 +65,7 @@ class SaveUser:
 
 @dataclass(frozen=True, slots=True)
 class RemoveUser:
-    """Remove a user."""
+    """Request to remove a user."""
 
     name: Name
     type: Literal["remove user"] = "remove user"
@@ -74,18 +77,18 @@ SettingValue = Number | dict[int, Number]
 
 @dataclass(frozen=True, slots=True)
 class Changed:
-    """One setting and its new value."""
+    """A setting and its new value."""
 
     place: Annotated[tuple[Name, ...], Field(min_length=2, max_length=6)]
-    """Names from the top: ("camera", "gain_db") or ("recipes", "1", "model", "limits", "hole", "threshold")."""
+    """Path of names: ("camera", "gain_db") or ("recipes", "1", "model", "limits", "hole", "threshold")."""
     value: SettingValue
     shown: SettingValue | None = None
-    """Value that the window showed before; noted where the settings leave it to the model."""
+    """Value that the window showed before; written to the journal where the model decides the value."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChangeSettings:
-    """Change settings of the station, all of them or none; answered once they are in use or refused."""
+    """Request to change settings, all of them or none; answered once they are active or refused."""
 
     values: Annotated[tuple[Changed, ...], Field(min_length=1, max_length=50)]
     reason: Text
@@ -94,14 +97,14 @@ class ChangeSettings:
 
 @dataclass(frozen=True, slots=True)
 class ReloadSettings:
-    """Read the settings file again, after somebody has edited it by hand."""
+    """Request to read the settings file again, after it was edited by hand."""
 
     type: Literal["reload settings"] = "reload settings"
 
 
 @dataclass(frozen=True, slots=True)
 class Acknowledge:
-    """Acknowledge an alarm."""
+    """Request to acknowledge an alarm."""
 
     number: int
     """Number of the alarm's entry in the journal."""
@@ -110,55 +113,56 @@ class Acknowledge:
 
 @dataclass(frozen=True, slots=True)
 class GiveReview:
-    """Say what one thinks of a verdict; the verdict itself stays."""
+    """Request to save a review of a verdict; the verdict itself is not changed."""
 
     inspection_id: int
     opinion: Opinion
     comment: Text = ""
     marks: Marks = field(default_factory=dict)
-    """Segments in which a defect was missed."""
-    type: Literal["give review"] = "give review"
+    """Missed defect kind by segment."""
+    type: Literal["give review"] = field(default="give review", kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
 class TakeTestImage:
-    """Take an image of what lies there now and judge it; the PLC is not informed."""
+    """Request to take an image of what is in the nest now and judge it, without the PLC."""
 
     type: Literal["take test image"] = "take test image"
 
 
 @dataclass(frozen=True, slots=True)
 class CheckMaster:
-    """Judge the master that lies there now."""
+    """Request to judge the master that is in the nest now."""
 
     serial: Name
     type: Literal["check master"] = "check master"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class HoldService:
-    """Begin or renew service mode: READY 0, MODE 3, until this is not said again in time."""
+    """Request to begin or renew service mode: READY 0 and MODE 3 until it is no longer renewed."""
 
     bit: int = 0
-    """The one bit of STATUS to set by hand."""
+    """Bit of STATUS to set by hand; 0: none."""
     look: bool = False
-    """Take setup images, one after the other; they are neither judged nor recorded."""
+    """True to take setup images, one after the other; they are neither judged nor recorded."""
     exposure_us: Annotated[float, Field(gt=0, le=1_000_000, allow_inf_nan=False)] | None = None
+    """Exposure of the setup images; None: that of the settings."""
     gain_db: Annotated[float, Field(ge=0, le=48, allow_inf_nan=False)] | None = None
-    """For the setup images; None: as the settings say."""
+    """Gain of the setup images; None: that of the settings."""
     type: Literal["hold service"] = "hold service"
 
 
 @dataclass(frozen=True, slots=True)
 class EndService:
-    """End service mode."""
+    """Request to end service mode."""
 
     type: Literal["end service"] = "end service"
 
 
 @dataclass(frozen=True, slots=True)
 class ResetCounts:
-    """Set the counters back to 0."""
+    """Request to set the counters back to 0."""
 
     type: Literal["reset counts"] = "reset counts"
 
@@ -179,16 +183,17 @@ Request = (
     | EndService
     | ResetCounts
 )
+"""A request of a window."""
 
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One request on its way to the engine."""
+    """A request with its token and number, as it is sent to the engine."""
 
     request_id: int
-    """Chosen by the window; the answer bears it."""
+    """Number chosen by the window; the answer carries it."""
     sent_s: float
-    """Monotonic time: one clock for all processes of the machine."""
+    """Monotonic time of sending; all processes of the machine share this clock."""
     request: Annotated[Request, Field(discriminator="type")]
     token: Annotated[str, Field(max_length=100)] = field(default="", repr=False)
     """Token of the login, or empty."""
@@ -196,20 +201,21 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What the engine says to one request."""
+    """Answer of the engine to one request."""
 
     request_id: int
     refusal: str = ""
-    """Why it was refused, in one line; empty: it was done."""
-    logged_in: bool = False
+    """Reason of the refusal in one line; empty if the request was carried out."""
+    logged_in: bool = field(default=False, kw_only=True)
     """True if the message's token belongs to a login."""
-    locked_s: float = 0.0
+    locked_s: float = field(default=0.0, kw_only=True)
     """Seconds until another PIN may be tried."""
-    token: str = field(default="", repr=False)
-    """Token of the new login."""
-    name: str = ""
-    level: Level | None = None
-    """Who has logged in."""
+    token: str = field(default="", repr=False, kw_only=True)
+    """Token of the new login, or empty."""
+    name: str = field(default="", kw_only=True)
+    """Name of the user who has logged in, or empty."""
+    level: Level | None = field(default=None, kw_only=True)
+    """Level of the user who has logged in."""
 
     @property
     def done(self) -> bool:

@@ -1,7 +1,7 @@
-"""Local channel between engine and panels over ZeroMQ; the only file that imports it.
+"""Local channel between engine and windows over ZeroMQ; the only file that imports zmq.
 
-Events are queued; previews ride a latest-only slot; requests go the other way, each is answered. The engine
-never waits for a panel, and a panel may come and go.
+Events are queued; of the previews only the latest is delivered; each request of a window is answered. The
+engine never waits for a window, and windows may start and stop at any time.
 """
 
 from contextlib import suppress
@@ -20,11 +20,11 @@ _PREVIEW = TypeAdapter(Preview)
 _MESSAGE = TypeAdapter(Message)
 _ANSWER = TypeAdapter(Answer)
 MAX_REQUESTS = 10
-"""Requests that are looked at in one go: windows have their turns, and each may take some milliseconds."""
+"""Number of requests that are received at once; each may take some milliseconds."""
 MAX_BYTES = 65_536
-"""Longest request; a sender of a longer one is disconnected."""
+"""Maximum length of a request; the sender of a longer one is disconnected."""
 LINGER_MS = 200
-"""Time that the last request of a window has to leave when it is closed."""
+"""Time within which the last request of a closing window must be sent."""
 
 
 def _address(settings: ChannelSettings, port: int) -> str:
@@ -35,21 +35,21 @@ def _address(settings: ChannelSettings, port: int) -> str:
 def _bind(
     context: "zmq.Context[zmq.Socket[bytes]]", socket: "zmq.Socket[bytes]", address: str, key: str
 ) -> None:
-    """Listen; if the port is taken nothing stays open. Raises LineError."""
+    """Listen on a port. Raises LineError if it is in use; then nothing stays open."""
     try:
         socket.bind(address)
     except zmq.ZMQError as error:
         context.destroy(linger=0)
         raise LineError(
-            f"channel cannot listen on {address} ({error}); free it or set channel.{key}"
+            f"the channel cannot listen on {address} ({error}); free the port or set channel.{key}"
         ) from None
 
 
 class Publisher:
-    """The engine's end. Use from one thread."""
+    """The engine's end for events and previews. Use from one thread."""
 
     def __init__(self, settings: ChannelSettings) -> None:
-        """Bind. Raises LineError if a port is taken."""
+        """Listen. Raises LineError if a port is in use."""
         self._context = zmq.Context()
         self._events = self._socket(1000)
         self._previews = self._socket(2)
@@ -67,11 +67,11 @@ class Publisher:
         return socket
 
     def send(self, event: Event) -> None:
-        """Queue an event; dropped for a panel that is 1000 behind."""
+        """Send an event; it is dropped for a window that is 1000 events behind."""
         self._events.send(_EVENTS.dump_json(event))
 
     def show(self, preview: Preview) -> None:
-        """Offer a picture; dropped for a panel that is behind."""
+        """Send a preview; it is dropped for a window that is behind."""
         self._previews.send(_PREVIEW.dump_json(preview))
 
     def close(self) -> None:
@@ -80,7 +80,7 @@ class Publisher:
 
 
 class Subscriber:
-    """A panel's end; connects and reconnects by itself. Use from one thread."""
+    """A window's end for events and previews; reconnects automatically. Use from one thread."""
 
     def __init__(self, settings: ChannelSettings) -> None:
         self._context = zmq.Context()
@@ -98,7 +98,7 @@ class Subscriber:
         return socket
 
     def events(self) -> list[Event]:
-        """All events that have come; those of another version are dropped."""
+        """Return all events received; those of another version are dropped."""
         found: list[Event] = []
         while (raw := self._receive(self._events)) is not None:
             try:
@@ -108,7 +108,7 @@ class Subscriber:
         return found
 
     def preview(self) -> Preview | None:
-        """The newest picture, if a new one has come."""
+        """Return the newest preview; None if there is no new one."""
         raw = self._receive(self._previews)
         try:
             return None if raw is None else _PREVIEW.validate_json(raw)
@@ -128,10 +128,10 @@ class Subscriber:
 
 
 class RequestServer:
-    """The engine's end for requests: each is answered to the window that sent it. Use from one thread."""
+    """The engine's end for requests; answers go to the window that asked. Use from one thread."""
 
     def __init__(self, settings: ChannelSettings) -> None:
-        """Bind. Raises LineError if the port is taken."""
+        """Listen. Raises LineError if the port is in use."""
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.ROUTER)
         for option, value in ((zmq.MAXMSGSIZE, MAX_BYTES), (zmq.LINGER, 0), (zmq.IPV6, 1)):
@@ -139,7 +139,10 @@ class RequestServer:
         _bind(self._context, self._socket, _address(settings, settings.requests_port), "requests_port")
 
     def received(self, wait_s: float) -> list[tuple[bytes, Message]]:
-        """Return what came, each with its sender; waits for the first. What is not understood is dropped."""
+        """Return the requests received, each with its sender; invalid ones are dropped.
+
+        `wait_s`: longest wait for the first one.
+        """
         found: list[tuple[bytes, Message]] = []
         if not self._socket.poll(int(wait_s * 1000)):
             return found
@@ -154,7 +157,7 @@ class RequestServer:
         return found
 
     def answer(self, sender: bytes, answer: Answer) -> None:
-        """Answer a window; dropped if it is gone or does not read."""
+        """Send an answer to a window; it is dropped if the window is closed or does not read."""
         with suppress(zmq.ZMQError):
             self._socket.send_multipart((sender, _ANSWER.dump_json(answer)), zmq.NOBLOCK)
 
@@ -164,10 +167,10 @@ class RequestServer:
 
 
 class RequestClient:
-    """A window's end for requests. Nothing is kept for an engine that is not there. Use from one thread."""
+    """A window's end for requests; nothing is queued while the engine is down. Use from one thread."""
 
     def __init__(self, settings: ChannelSettings) -> None:
-        """Connect, and reconnect whenever the engine is back."""
+        """Connect; reconnects automatically."""
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.DEALER)
         for option, value in (
@@ -180,7 +183,7 @@ class RequestClient:
         self._socket.connect(_address(settings, settings.requests_port))
 
     def send(self, message: Message) -> bool:
-        """Send a request. Return False if there is no connection to the engine."""
+        """Send a request; return False if there is no connection to the engine."""
         try:
             self._socket.send(_MESSAGE.dump_json(message), zmq.NOBLOCK)
         except zmq.Again:
@@ -188,7 +191,7 @@ class RequestClient:
         return True
 
     def answers(self) -> list[Answer]:
-        """Return the answers that have come."""
+        """Return all answers received; those of another version are dropped."""
         found: list[Answer] = []
         while True:
             try:
@@ -199,5 +202,5 @@ class RequestClient:
                 found.append(_ANSWER.validate_json(raw))
 
     def close(self) -> None:
-        """Close the socket; what was sent last still leaves."""
+        """Close the socket after the last request was sent."""
         self._context.destroy(linger=LINGER_MS)

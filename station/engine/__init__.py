@@ -1,1 +1,1 @@
-"""The engine: one trigger, one part, one record, one answer to the PLC."""
+"""The engine: each trigger gives one part, one record and one result for the PLC."""

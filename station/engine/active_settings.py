@@ -1,4 +1,4 @@
-"""The settings that the engine goes by: those of its start, until changed ones are wanted and accepted."""
+"""The active settings of the engine: those of its start, until others are requested and accepted."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,65 +12,64 @@ from station.settings.section import Section
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
-    """Changed settings, ready to be used."""
+class PreparedSettings:
+    """Settings that have been checked and loaded, ready to become active."""
 
     settings: Settings
     loaded: Loaded
     camera: Camera | None
-    """If it is used otherwise."""
+    """New camera, not yet open; None if the camera's settings are unchanged."""
 
 
-class Released:
-    """Recipes are always loaded by the settings in use, so that one configuration names recipe and camera together."""
+class ActiveSettings:
+    """The active settings; recipes are always loaded with them, so that recipe and camera belong together."""
 
     def __init__(
-        self, settings: Settings, again: Callable[[], Settings], make_camera: Callable[[AnyCamera], Camera]
+        self, settings: Settings, read: Callable[[], Settings], make_camera: Callable[[AnyCamera], Camera]
     ) -> None:
-        """`again` reads the file. Raises WeldgateError."""
-        self._settings, self._again, self._make_camera = settings, again, make_camera
+        """`read` returns the settings in the file. Raises WeldgateError."""
+        self._settings, self._read, self._make_camera = settings, read, make_camera
 
     @property
     def settings(self) -> Settings:
-        """Settings in use."""
+        """Active settings."""
         return self._settings
 
-    def prepare(self, number: int) -> Loaded:
-        """A recipe. Raises WeldgateError."""
+    def load_recipe(self, number: int) -> Loaded:
+        """Return a recipe loaded with the active settings. Raises WeldgateError."""
         return prepare(self._settings, number)
 
-    def changed(self, number: int) -> Change:
-        """Return the file as it is now, with a recipe loaded by it. Raises WeldgateError."""
-        return self.prepared(self._again(), number)
+    def prepare_file(self, number: int) -> PreparedSettings:
+        """Return the settings that the file holds now, with a recipe loaded. Raises WeldgateError."""
+        return self.prepare(self._read(), number)
 
-    def prepared(self, new: Settings, number: int) -> Change:
-        """Return other settings with a recipe loaded by them. Raises WeldgateError if they cannot be used.
+    def prepare(self, new: Settings, number: int) -> PreparedSettings:
+        """Return other settings with a recipe loaded. Raises WeldgateError if they cannot be used.
 
-        May be called from another thread than `accept`.
+        May be called from another thread than `activate`.
         """
         camera = None
         if new.camera.identity != self._settings.camera.identity:
-            raise SettingsError("another camera cannot take over while the station runs; start it again")
+            raise SettingsError("the camera cannot be exchanged while the station runs; restart the station")
         known = {1, *self._settings.recipes}
         for other in sorted({1, *new.recipes} - {number}):
             if other not in known or _judging(new, other) != _judging(self._settings, other):
-                prepare(
-                    new, other
-                )  # or the station would not start next time, or refuse the recipe when the PLC wants it
+                prepare(new, other)  # refuse now what the next start or the PLC's next command would refuse
         loaded = prepare(new, number)
         if new.camera != self._settings.camera:
             camera = self._make_camera(new.camera)
-        return Change(new, loaded, camera)
+        return PreparedSettings(new, loaded, camera)
 
-    def camera(self) -> Camera:
-        """Return the camera of the settings in use, not yet open."""
+    def make_camera(self) -> Camera:
+        """Return the camera of the active settings, not yet open."""
         return self._make_camera(self._settings.camera)
 
-    def accept(self, change: Change) -> None:
-        """From now on."""
-        self._settings = change.settings
+    def activate(self, prepared: PreparedSettings) -> None:
+        """Make prepared settings the active ones."""
+        self._settings = prepared.settings
 
 
 def _judging(settings: Settings, number: int) -> tuple[Section, ...]:
+    """Return the sections by which a recipe judges."""
     chosen = for_recipe(settings, number)
     return chosen.weld, chosen.quality, chosen.model

@@ -1,4 +1,4 @@
-"""Keeps in the journal what raised an alarm and when it was over; from a thread of its own, so that no part waits for it."""
+"""Writes alarms to the journal when they become active and when they clear; in its own thread."""
 
 import logging
 import queue
@@ -14,64 +14,65 @@ from station.plc.map.alarms import TEXTS, Alarm
 log = logging.getLogger("weldgate.alarms")
 
 MAX_WAITING = 1000
-LOOKED_AT = 2000
-"""Entries of the journal, the newest."""
+"""Number of entries that wait for a slow disk."""
+ENTRIES_READ = 2000
+"""Number of newest journal entries that are read at the start."""
 
 
 class AlarmLog:
-    """Hears of all alarms that last, as often as one likes, and of each that passes."""
+    """Journal of active alarms and of events (alarms that do not last)."""
 
     def __init__(self, folder: Path) -> None:
-        """What lasted when the station went down lasts until it is seen to be over."""
+        """`folder`: the archive; alarms active at the last shutdown stay active until they clear."""
         self._folder = folder
-        self._last = _open(folder)
+        self._active = _still_active(folder)
         self._queue: queue.Queue[tuple[Kind, int, str] | None] = queue.Queue(MAX_WAITING)
         self._thread = threading.Thread(target=self._run, name="alarms", daemon=True)
         self._thread.start()
 
-    def lasting(self, codes: Collection[int]) -> None:
-        """All codes that last now."""
-        now = frozenset(codes)
-        for code in sorted(now - self._last):
+    def set_active(self, codes: Collection[int]) -> None:
+        """Take in the codes of all active alarms, at any rate; only changes are written."""
+        active = frozenset(codes)
+        for code in sorted(active - self._active):
             log.warning("alarm 16#%04X: %s; %s", code, TEXTS[code].cause, TEXTS[code].action)
             self._put(Kind.ALARM, code, "")
-        for code in sorted(self._last - now):
-            log.info("alarm 16#%04X is over: %s", code, TEXTS[code].cause)
+        for code in sorted(self._active - active):
+            log.info("alarm 16#%04X cleared: %s", code, TEXTS[code].cause)
             self._put(Kind.ALARM_OVER, code, "")
-        self._last = now
+        self._active = active
 
-    def passing(self, code: int, what: str) -> None:
-        """Something that happened once, to `what`."""
-        self._put(Kind.ALARM, code, what)
+    def add_event(self, code: int, subject: str) -> None:
+        """Note an event that concerned `subject`."""
+        self._put(Kind.ALARM, code, subject)
 
-    def _put(self, kind: Kind, code: int, what: str) -> None:
+    def _put(self, kind: Kind, code: int, subject: str) -> None:
         try:
-            self._queue.put_nowait((kind, code, what))
+            self._queue.put_nowait((kind, code, subject))
         except queue.Full:
-            log.error("alarm 16#%04X could not be kept: the disk is too slow", code)
+            log.error("alarm 16#%04X could not be written to the journal: the disk is too slow", code)
 
     def close(self) -> None:
-        """Write what waits, end."""
+        """Write what waits and end the thread."""
         if self._thread.is_alive():
             self._queue.put(None)
             self._thread.join(timeout=10)
 
     def _run(self) -> None:
         while (item := self._queue.get()) is not None:
-            kind, code, what = item
+            kind, code, subject = item
             try:
-                append(self._folder, kind, "station", f"16#{code:04X}", after=what)
+                append(self._folder, kind, "station", f"16#{code:04X}", after=subject)
             except RecordError as error:
                 log.error("%s", error)
 
 
-def _open(folder: Path) -> frozenset[int]:
-    """Codes of lasting alarms that the journal tells of and that are not over in it; none, and said, if it cannot be read."""
+def _still_active(folder: Path) -> frozenset[int]:
+    """Return the alarms that the journal shows as active; none, with a log entry, if it cannot be read."""
     found: dict[int, bool] = {}
     try:
-        for entry in entries(folder, (Kind.ALARM, Kind.ALARM_OVER), limit=LOOKED_AT):
+        for entry in entries(folder, (Kind.ALARM, Kind.ALARM_OVER), limit=ENTRIES_READ):
             found.setdefault(int(entry.subject.removeprefix("16#"), 16), entry.kind is Kind.ALARM)
     except (RecordError, ValueError) as error:  # parts are judged all the same
-        log.error("alarms of the run before: %s", error)
+        log.error("alarms of the previous run cannot be read: %s", error)
         return frozenset()
-    return frozenset(code for code, on in found.items() if on and code in list(Alarm))
+    return frozenset(code for code, active in found.items() if active and code in list(Alarm))

@@ -1,4 +1,4 @@
-"""The engine's loop: triggers and commands of the PLC, requests of people, self-checks while idle."""
+"""The engine's loop: triggers and commands of the PLC, orders of operators, self-checks while idle."""
 
 import logging
 import threading
@@ -8,15 +8,16 @@ from functools import partial
 from station.archive.writer import Archive
 from station.camera.reconnecting import ReconnectingCamera
 from station.domain import Origin
-from station.engine.active_settings import Released
+from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog
-from station.engine.health import Seen, health
+from station.engine.health import StationState, health
 from station.engine.listener import Listener
+from station.engine.operator_orders import OperatorOrders, no_part_in_progress
 from station.engine.orders import Reload, Service, UseSettings
 from station.engine.procedure import Procedure
-from station.engine.self_checks import Watch
-from station.engine.service_mode import Attention, drained, look
+from station.engine.self_checks import SelfChecks
 from station.engine.settings_use import RELOAD_REFUSED, use_settings
+from station.engine.setup_image import take_setup_image
 from station.engine.status_report import StatusReport
 from station.errors import LineError, WeldgateError
 from station.inspection.loading import Loaded
@@ -26,10 +27,11 @@ from station.plc.port import Command, Line, Trigger
 log = logging.getLogger("weldgate.cycle")
 
 IDLE_S = 0.1
+"""Longest wait for a trigger or command before the other tasks have their turn."""
 
 
 class Cycle:
-    """Runs parts until told to stop."""
+    """The loop that inspects parts until it is stopped. Use from one thread."""
 
     def __init__(
         self,
@@ -39,22 +41,21 @@ class Cycle:
         line: Line,
         archive: Archive,
         loaded: Loaded,
-        released: Released,
-        watch: Watch,
+        active: ActiveSettings,
+        self_checks: SelfChecks,
         listener: Listener,
         alarm_log: AlarmLog,
     ) -> None:
-        """`released`: settings in use."""
+        """`origin`: origin of the camera's frames; `loaded`: the recipe to start with."""
         self._camera = camera
         self._line = line
         self._archive = archive
         self._loaded = loaded
-        self._released = released
-        self._watch = watch
+        self._active = active
+        self._self_checks = self_checks
         self._listener = listener
-        self._attention = Attention()
+        self._orders = OperatorOrders()
         self._settings_refused = False
-        self._reloaded_s = 0.0
         self._status = StatusReport(
             camera=camera,
             origin=origin,
@@ -67,126 +68,136 @@ class Cycle:
             origin=origin,
             line=line,
             archive=archive,
-            watch=watch,
+            self_checks=self_checks,
             listener=listener,
             alarm_log=alarm_log,
             check_in=self._check_in,
         )
 
     def run(self, stop: threading.Event) -> None:
-        """Serve triggers until `stop`; closes the camera at the end."""
+        """Serve triggers until `stop` is set, then close the camera. Raises LineError."""
         try:
             while not stop.is_set():
-                self._camera.look_after()
-                self._hear()
-                seen = self._seen()
-                self._line.check_in(health(seen))
-                self._status.send(seen, self._reloaded_s)
+                self._camera.keep_open()
+                self._take_orders()
+                state = self._state()
+                self._line.check_in(health(state))
+                self._status.send(state)
                 request = self._line.next_request(IDLE_S)
                 if isinstance(request, Trigger):
                     self._serve(request)
                 elif isinstance(request, Command):
                     self._line.command_done(request, self._load_recipe(request))
-                elif not self._attend():
-                    self._watch.idle()
+                elif not self._carry_out_order():
+                    self._self_checks.run_when_idle()
         finally:
             self._camera.close()
 
     def _serve(self, trigger: Trigger) -> None:
         failed = f"part of trigger {trigger.trigger_id} was not answered"
-        answered = self._guarded(partial(self._procedure.part, trigger, self._loaded), failed)
+        answered = self._guarded(partial(self._procedure.inspect_part, trigger, self._loaded), failed)
         if not answered and self._line.awaits_result(trigger):
-            self._guarded(partial(self._procedure.unanswered, trigger, self._loaded), failed)
+            self._guarded(partial(self._procedure.show_error, trigger, self._loaded), failed)
 
-    def _hear(self) -> None:
-        for order in self._attention.hear(self._listener.orders()):
+    def _take_orders(self) -> None:
+        for order in self._orders.take_in(self._listener.orders()):
             self._line.reset_counts()
-            log.info("counters set back by %s", order.who)
+            log.info("counters were reset by %s", order.who)
 
-    def _attend(self) -> bool:
-        """What people ask for, once no part is in work. Whether there was anything to do."""
+    def _carry_out_order(self) -> bool:
+        """Carry out one order if no part is in progress; return whether there was anything to do."""
         status = self._line.state().status
-        task, wanted = self._attention.due(status), self._attention.service.looking
+        task, setup = self._orders.next_task(status), self._orders.service.setup_images
         if isinstance(task, Reload):
-            self._guarded(partial(self._reload, task), "the settings were not read again")
+            self._guarded(self._reload, "the settings file was not read again")
             task.ticket.answer(RELOAD_REFUSED if self._settings_refused else "")
         elif isinstance(task, UseSettings):
-            work = partial(use_settings, task, self._released, self._camera, self._loaded.number, self._use)
+            work = partial(
+                use_settings,
+                task,
+                active=self._active,
+                camera=self._camera,
+                number=self._loaded.number,
+                use=self._use,
+            )
             self._guarded(work, "changed settings are not used")
             self._settings_refused &= bool(task.ticket.refusal)
         elif task is not None:
-            inspect = partial(self._procedure.test_image, task.master, self._loaded)
-            self._guarded(inspect, "the test picture was not judged")
-        elif wanted is not None and drained(status):
-            self._guarded(partial(self._look, wanted), "no picture for setting up")
-        return task is not None or wanted is not None
+            inspect = partial(self._procedure.inspect_now, task.master, self._loaded)
+            self._guarded(inspect, "the test image was not judged")
+        elif setup is not None and no_part_in_progress(status):
+            self._guarded(partial(self._take_setup_image, setup), "no setup image was taken")
+        return task is not None or setup is not None
 
-    def _look(self, wanted: Service) -> None:
-        event, preview = look(self._camera, self._loaded.inspector, wanted)
+    def _take_setup_image(self, request: Service) -> None:
+        event, preview = take_setup_image(self._camera, self._loaded.inspector, request)
         self._listener.event(event)
         if preview is not None:
             self._listener.preview(preview)
 
-    def _reload(self, task: Reload) -> None:
-        """Use the settings as they are now; if they are no good, those before stay in use."""
-        self._settings_refused, self._reloaded_s = True, task.asked_s
+    def _reload(self) -> None:
+        """Use the settings that the file holds now; the previous ones stay active if they cannot be used."""
+        self._settings_refused = True
         try:
-            change = self._released.changed(self._loaded.number)
+            prepared = self._active.prepare_file(self._loaded.number)
         except WeldgateError as error:
             log.error("changed settings are not used: %s", error)
             return
-        if change.camera is None or self._camera.exchange(change.camera):
+        if prepared.camera is None or self._camera.replace(prepared.camera):
             self._settings_refused = False
-            self._released.accept(change)
-            self._use(change.loaded)
+            self._active.activate(prepared)
+            self._use(prepared.loaded)
 
     def _load_recipe(self, command: Command) -> bool:
-        """Whether the recipe is in use now; if not, the one before still is."""
+        """Load the recipe that the PLC asks for; return False if the previous one stays active."""
         number = command.arg
         try:
-            loaded = self._released.prepare(number)
+            loaded = self._active.load_recipe(number)
         except WeldgateError as error:
             log.error("recipe %d was not loaded: %s", number, error)
             return False
-        except Exception:  # the recipe before is still in use
+        except Exception:  # the previous recipe stays active
             log.exception("recipe %d was not loaded", number)
             return False
         if not self._line.awaits_command(command):
-            log.error("recipe %d was loaded too late, the one before stays in use", number)
+            log.error("recipe %d was loaded too late; the previous one stays active", number)
             return False
         self._use(loaded)
         return True
 
     def _use(self, loaded: Loaded) -> None:
         self._loaded = loaded
-        self._watch.use(loaded)
+        self._self_checks.use(loaded)
         self._check_in()
-        log.info("recipe %d in use, configuration %d", loaded.number, loaded.provenance.config_crc)
+        log.info("recipe %d is active, configuration %d", loaded.number, loaded.provenance.config_crc)
 
-    def _seen(self) -> Seen:
-        watch = self._watch
-        return Seen(
-            camera_there=self._camera.there,
+    def _state(self) -> StationState:
+        checks = self._self_checks
+        return StationState(
+            camera_connected=self._camera.connected,
             can_write=self._archive.has_room(),
             room=self._archive.room(),
             plc_silent=self._line.state().offline is Offline.PLC_SILENT,
-            self_test_failed=watch.self_test_failed,
-            master_wrong=watch.master_wrong,
-            masters_due=watch.masters_due,
-            drifting=watch.drifting,
+            self_test_failed=checks.self_test_failed,
+            master_wrong=checks.master_wrong,
+            masters_due=checks.masters_due,
+            drifting=checks.drifting,
             settings_refused=self._settings_refused,
-            service=self._attention.service.who,
-            attended=self._attention.waiting,
-            bit=self._attention.service.bit,
+            service=self._orders.service.who,
+            order_waiting=self._orders.waiting,
+            bit=self._orders.service.bit,
             recipe=self._loaded.provenance.recipe,
             config_crc=self._loaded.provenance.config_crc,
         )
 
     def _check_in(self) -> None:
-        self._line.check_in(health(self._seen()))
+        self._line.check_in(health(self._state()))
 
     def _guarded(self, work: Callable[[], None], failed: str) -> bool:
-        """A fault nobody foresaw costs one part, not the station: the handshake answers ERROR at its deadline. Whether all went well."""
+        """Do `work` and return whether it succeeded; an unexpected fault is logged as `failed`.
+
+        Such a fault costs one part, not the station: the handshake shows ERROR at its deadline.
+        """
         try:
             work()
         except LineError:

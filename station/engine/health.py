@@ -1,4 +1,4 @@
-"""How the station stands: from what was seen of camera, disk, line and itself to what the PLC and the people are told; pure."""
+"""Derives alarms, and the health for the PLC, from the state of camera, disk, line and checks; pure."""
 
 from dataclasses import dataclass
 
@@ -9,10 +9,10 @@ from station.plc.port import Health
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Seen:
-    """What was found just now."""
+class StationState:
+    """State of the station's parts at one moment."""
 
-    camera_there: bool
+    camera_connected: bool
     can_write: bool
     room: Room
     plc_silent: bool
@@ -22,54 +22,55 @@ class Seen:
     drifting: bool
     settings_refused: bool
     service: str
-    """Who works on the station, or empty."""
-    attended: bool
-    """Somebody asked for a picture or for other settings: it is done once no part is in work."""
+    """User in service mode, or empty."""
+    order_waiting: bool
+    """True if an order waits for a moment without a part in progress."""
     bit: int
+    """Bit of STATUS that is set by hand; 0: none."""
     recipe: int
     config_crc: int
 
 
-def alarms(seen: Seen) -> tuple[Alarm, ...]:
-    """What lasts, the gravest first."""
-    lasting = (
-        (Alarm.CAMERA_LOST, not seen.camera_there),
-        (Alarm.ARCHIVE_FULL, not seen.can_write),
-        (Alarm.SELF_TEST_FAILED, seen.self_test_failed),
-        (Alarm.MASTER_WRONG, seen.master_wrong),
-        (Alarm.PLC_SILENT, seen.plc_silent),
-        (Alarm.SETTINGS_REFUSED, seen.settings_refused),
-        (Alarm.MASTERS_DUE, seen.masters_due),
-        (Alarm.PICTURES_DRIFT, seen.drifting),
-        (Alarm.DISK_FILLS, seen.can_write and seen.room is not Room.ENOUGH),
+def alarms(state: StationState) -> tuple[Alarm, ...]:
+    """Return the active alarms, the most severe first."""
+    conditions = (
+        (Alarm.CAMERA_LOST, not state.camera_connected),
+        (Alarm.ARCHIVE_FULL, not state.can_write),
+        (Alarm.SELF_TEST_FAILED, state.self_test_failed),
+        (Alarm.MASTER_WRONG, state.master_wrong),
+        (Alarm.PLC_SILENT, state.plc_silent),
+        (Alarm.SETTINGS_REFUSED, state.settings_refused),
+        (Alarm.MASTERS_DUE, state.masters_due),
+        (Alarm.PICTURES_DRIFT, state.drifting),
+        (Alarm.DISK_FILLS, state.can_write and state.room is not Room.ENOUGH),
     )
-    return tuple(alarm for alarm, on in lasting if on)
+    return tuple(alarm for alarm, active in conditions if active)
 
 
-def health(seen: Seen) -> Health:
-    """For the line."""
+def health(state: StationState) -> Health:
+    """Return the health that the line publishes."""
     offline = Offline.NONE
-    if not seen.camera_there:
+    if not state.camera_connected:
         offline = Offline.CAMERA_LOST
-    elif not seen.can_write:
+    elif not state.can_write:
         offline = Offline.ARCHIVE_FULL
-    elif seen.self_test_failed:
+    elif state.self_test_failed:
         offline = Offline.SELF_TEST_FAILED
     failed = offline is not Offline.NONE
-    if seen.service:
+    if state.service:
         offline = Offline.SERVICE
-    elif seen.attended and not failed:
+    elif state.order_waiting and not failed:
         offline = Offline.ATTENDED
-    lasting = alarms(seen)
+    active = alarms(state)
     return Health(
         ready=offline is Offline.NONE,
         offline=offline,
         failure=failed,
-        config_crc=seen.config_crc,
-        out_of_spec=seen.drifting,
-        function_check=seen.master_wrong or seen.masters_due,
-        maintenance=seen.room is not Room.ENOUGH,
-        recipe=seen.recipe,
-        alarm=int(lasting[0]) if lasting else 0,
-        bit=seen.bit,
+        config_crc=state.config_crc,
+        out_of_spec=state.drifting,
+        function_check=state.master_wrong or state.masters_due,
+        maintenance=state.room is not Room.ENOUGH,
+        recipe=state.recipe,
+        alarm=int(active[0]) if active else 0,
+        bit=state.bit,
     )

@@ -1,4 +1,4 @@
-"""Who hears of what the engine does, and orders things of it; must not block."""
+"""The cycle's connection to the operators: where its events go and where its orders come from."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -9,9 +9,11 @@ from station.engine.orders import Order
 
 @dataclass(frozen=True, slots=True)
 class Listener:
-    """The cycle's connections to the people at the station."""
+    """Functions that the cycle calls; none of them may block."""
 
     event: Callable[[Event], None]
+    """Takes each event of the cycle."""
     preview: Callable[[Preview], None]
+    """Takes each image for the window."""
     orders: Callable[[], Sequence[Order]] = tuple
-    """Returns what people ask for, once it was allowed."""
+    """Returns the new orders of operators, already checked against their rights."""

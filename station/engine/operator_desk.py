@@ -1,7 +1,7 @@
-"""Carries out what windows ask for, if their login may.
+"""Carries out the requests of windows, within the rights of their logins.
 
-It keeps accounts, reviews, acknowledgements and service mode, and gives orders to the cycle. Each request gets
-one answer. Whatever is done is in the journal before it is done.
+It owns accounts, reviews, acknowledgements and service mode, and gives orders to the cycle. Each request gets
+one answer. Every action is in the journal before it is done.
 """
 
 import logging
@@ -41,7 +41,7 @@ from station.errors import LoginError, RecordError, WeldgateError
 from station.journal import accounts
 from station.journal.journal import Kind, entries
 from station.journal.journal_writer import append
-from station.journal.review_writer import give
+from station.journal.review_writer import save_review
 from station.journal.users import Level, User, users
 from station.plc.map.registers import Status
 from station.plc.port import Counts
@@ -49,19 +49,21 @@ from station.plc.port import Counts
 log = logging.getLogger("weldgate.requests")
 
 FRESH_S = 2.0
-"""An older request is refused: its sender has seen that nothing came."""
-LOOKED_AT = 2000
-"""Entries of alarms, the newest, that can be acknowledged."""
-OTHER_SERVES = "somebody else works on the station"
+"""Age from which a request is refused: its sender has already seen that there was no answer."""
+ACKNOWLEDGEABLE = 2000
+"""Number of newest alarm entries that can be acknowledged."""
+OTHER_IN_SERVICE = "another user is in service mode"
+"""Refusal of service mode."""
 
 Reply = Callable[[Answer], None]
-Later = Callable[[str, Message, Reply], None]
-"""Takes work that may last: who asks, for what, and what is called with the answer."""
+"""Function that sends an answer."""
+Start = Callable[[str, Message, Reply], None]
+"""Function that starts long work: name of the user, request, and how to reply."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Lease:
-    """Service mode as one login holds it; `until_s` is monotonic."""
+    """Service mode held by one login; `until_s` is monotonic."""
 
     token: str
     who: str
@@ -70,26 +72,27 @@ class _Lease:
 
 
 class OperatorDesk:
-    """Knows who is logged in and what they may. Use from one thread."""
+    """Answers requests by the rights of the logins. Use from one thread."""
 
     def __init__(
         self,
         folder: Path,
         logins: Logins,
+        *,
         hand_over: Callable[[orders.Order], None],
         counts: Callable[[], Counts | None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`folder`: the archive; `hand_over` gives an order to the cycle; `counts` returns the counted parts."""
+        """`folder`: the archive; `hand_over` gives an order to the cycle; `counts` returns the counters."""
         self._folder, self._logins, self._hand_over, self._counts = folder, logins, hand_over, counts
         self._clock = clock
         self._lease: _Lease | None = None
 
-    def handle(self, message: Message, reply: Reply, change: Later) -> None:
-        """Answer a request through `reply`; changes of settings go to `change`, which replies later."""
+    def handle(self, message: Message, reply: Reply, change: Start) -> None:
+        """Answer a request by `reply`; changes of settings are started by `change`, which replies later."""
         now_s = self._clock()
         user = self._logins.user(message.token, now_s)
-        self._logins.heard(message.token, False, now_s)
+        self._logins.renew(message.token, False, now_s)
         try:
             if abs(now_s - message.sent_s) > FRESH_S:
                 raise WeldgateError(TOO_OLD)
@@ -101,55 +104,58 @@ class OperatorDesk:
             elif isinstance(message.request, ChangeSettings | ReloadSettings):
                 change(user.name, message, reply)
             else:
-                self._do(message.request, user, message.token)
+                self._carry_out(message.request, user, message.token)
                 reply(Answer(message.request_id, logged_in=True))
         except WeldgateError as error:
             locked_s = error.locked_s if isinstance(error, LoginError) else 0.0
-            reply(Answer(message.request_id, str(error), user is not None, locked_s))
-        except Exception:  # one request that fails must not end those of others
-            log.exception("request %r", message.request)
-            reply(Answer(message.request_id, FAULT, user is not None))
+            logged_in = user is not None
+            reply(Answer(message.request_id, str(error), logged_in=logged_in, locked_s=locked_s))
+        except Exception:  # a request that fails must not affect other windows
+            log.exception("request %r failed", message.request)
+            reply(Answer(message.request_id, FAULT, logged_in=user is not None))
 
     def _log_in(self, message: Message, request: LogIn) -> Answer:
         name = request.name.strip()
         if not users(self._folder):
-            accounts.save_user(self._folder, name, name, Level.ADMIN, request.pin)
+            accounts.save_user(self._folder, name, level=Level.ADMIN, pin=request.pin, by=name)
         user = accounts.log_in(self._folder, name, request.pin)
-        self._log_out(message.token, "another one logs in")
+        self._log_out(message.token, "another user logged in")
         token = self._logins.begin(user, self._clock())
         return Answer(message.request_id, logged_in=True, token=token, name=user.name, level=user.level)
 
     def _log_out(self, token: str, why: str) -> None:
-        """End a login, and service mode with it: who leaves must be able to, whatever the journal says."""
+        """End a login and its service mode, even if the journal cannot be written."""
         if self._lease is not None and self._lease.token == token:
             self._end_service(why)
         if (user := self._logins.end(token)) is not None:
             with suppress(RecordError):
                 accounts.log_out(self._folder, user, why)
 
-    def _do(self, request: Request, user: User, token: str) -> None:
-        """Carry out a request that the user may make. Raises WeldgateError; then it was not carried out."""
+    def _carry_out(self, request: Request, user: User, token: str) -> None:
+        """Carry out a request that the user may make. Raises WeldgateError if it was not carried out."""
         match request:
             case StayLoggedIn():
-                self._logins.heard(token, request.touched, self._clock())
+                self._logins.renew(token, request.touched, self._clock())
             case LogOut():
                 self._log_out(token, request.why)
             case SaveUser():
-                accounts.save_user(self._folder, user.name, request.name, request.level, request.pin)
-                self._changed(request.name.strip())
+                accounts.save_user(
+                    self._folder, request.name, level=request.level, pin=request.pin, by=user.name
+                )
+                self._end_logins_of(request.name.strip())
             case RemoveUser():
-                accounts.remove_user(self._folder, user.name, request.name)
-                self._changed(request.name)
+                accounts.remove_user(self._folder, request.name, by=user.name)
+                self._end_logins_of(request.name)
             case Acknowledge():
                 self._acknowledge(request, user)
             case GiveReview():
                 self._review(request, user)
             case TakeTestImage():
-                self._note(user, "test picture")
-                self._hand_over(orders.TestPicture())
+                self._note(user, "test image")
+                self._hand_over(orders.TestImage())
             case CheckMaster():
-                self._note(user, "test picture", after=request.serial)
-                self._hand_over(orders.TestPicture(request.serial))
+                self._note(user, "test image", after=request.serial)
+                self._hand_over(orders.TestImage(request.serial))
             case ResetCounts():
                 counts = self._counts()
                 before = "" if counts is None else f"OK {counts.ok}, NOK {counts.nok}, ERROR {counts.error}"
@@ -164,15 +170,15 @@ class OperatorDesk:
                 raise WeldgateError(FAULT)
 
     def _note(self, user: User, subject: str, before: str = "", after: str = "") -> None:
-        append(self._folder, Kind.SERVICE, user.name, subject, before, after)
+        append(self._folder, Kind.SERVICE, user.name, subject, before=before, after=after)
 
-    def _changed(self, name: str) -> None:
+    def _end_logins_of(self, name: str) -> None:
         """End the logins of a user whose level or PIN has changed."""
         for token in self._logins.tokens(name):
             self._log_out(token, "user changed")
 
     def _acknowledge(self, request: Acknowledge, user: User) -> None:
-        alarms = entries(self._folder, (Kind.ALARM,), limit=LOOKED_AT)
+        alarms = entries(self._folder, (Kind.ALARM,), limit=ACKNOWLEDGEABLE)
         if all(entry.number != request.number for entry in alarms):
             raise RecordError("there is no such alarm")
         append(self._folder, Kind.ALARM_SEEN, user.name, str(request.number))
@@ -180,9 +186,9 @@ class OperatorDesk:
     def _review(self, request: GiveReview, user: User) -> None:
         rows = find(self._folder, Query(number=request.inspection_id))
         if not rows:
-            raise RecordError(f"there is no part {request.inspection_id}")
+            raise RecordError(f"part {request.inspection_id} does not exist in the archive")
         try:
-            give(
+            save_review(
                 self._folder,
                 user.name,
                 may_second=user.level >= Level.QUALITY,
@@ -198,39 +204,46 @@ class OperatorDesk:
     def _hold_service(self, request: HoldService, user: User, token: str) -> None:
         held, now_s = self._lease, self._clock()
         if held is not None and held.who != user.name:
-            raise LoginError(OTHER_SERVES)
+            raise LoginError(OTHER_IN_SERVICE)
         if request.bit and request.bit not in [int(flag) for flag in Status]:
-            raise LoginError(f"{request.bit} is not one bit of STATUS")
+            raise LoginError(f"{request.bit} is not a single bit of STATUS")
         if held is None:
             self._note(user, "service mode", after="begins")
         bit = 0 if held is None else held.bit
         if request.bit != bit:
-            self._note(user, "bit by hand", _bit(bit), _bit(request.bit))
+            self._note(user, "bit by hand", _bit_name(bit), _bit_name(request.bit))
         self._lease = _Lease(token, user.name, request.bit, now_s + LEASE_S)
-        wanted = (request.bit, request.look, request.exposure_us, request.gain_db)
-        self._hand_over(orders.Service(user.name, *wanted))
+        order = orders.Service(
+            user.name,
+            bit=request.bit,
+            setup_images=request.look,
+            exposure_us=request.exposure_us,
+            gain_db=request.gain_db,
+        )
+        self._hand_over(order)
 
     def _end_service(self, why: str) -> None:
         if (lease := self._lease) is None:
             return
         self._lease = None
-        self._hand_over(orders.Service(lease.who, over=True))
-        with suppress(RecordError):  # who leaves must be able to
-            append(self._folder, Kind.SERVICE, lease.who, "service mode", "begins", "over", why)
+        self._hand_over(orders.Service(lease.who, ended=True))
+        with suppress(RecordError):  # service mode must end even if the journal cannot be written
+            entry = {"before": "begins", "after": "over", "reason": why}
+            append(self._folder, Kind.SERVICE, lease.who, "service mode", **entry)
 
     def tick(self) -> None:
-        """End what was not renewed in time."""
+        """End service mode and logins that were not renewed in time."""
         now_s = self._clock()
         if self._lease is not None and now_s > self._lease.until_s:
             self._end_service("window closed")
-        for token, why in self._logins.over(now_s):
+        for token, why in self._logins.ended(now_s):
             self._log_out(token, why)
 
     def close(self) -> None:
-        """End all logins: the engine stops."""
+        """End all logins, because the engine stops."""
         for token in self._logins.tokens():
-            self._log_out(token, "the engine stops")
+            self._log_out(token, "engine stopped")
 
 
-def _bit(bit: int) -> str:
+def _bit_name(bit: int) -> str:
     return str(Status(bit).name) if bit else "–"

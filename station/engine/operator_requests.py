@@ -1,4 +1,4 @@
-"""Answers the windows in threads of its own: neither the hash of a PIN nor a journal delays a part."""
+"""Answers the requests of windows in its own threads, so that neither PINs nor the journal delay a part."""
 
 import logging
 import queue
@@ -10,7 +10,7 @@ from pathlib import Path
 from station.channel.events import Event, StatusEvent
 from station.channel.requests import FAULT, Answer, ChangeSettings, Message, ReloadSettings
 from station.channel.zeromq import RequestServer
-from station.engine.active_settings import Released
+from station.engine.active_settings import ActiveSettings
 from station.engine.logins import Logins
 from station.engine.operator_desk import OperatorDesk, Reply
 from station.engine.orders import Order
@@ -21,29 +21,33 @@ from station.plc.port import Counts
 log = logging.getLogger("weldgate.requests")
 
 POLL_S = 0.05
+"""Longest wait for a request."""
 MAX_CHANGES = 16
-"""Changes of settings that may wait for the one before."""
-TOO_MANY = "too many changes of settings wait: try again"
+"""Number of changes of settings that may wait."""
+TOO_MANY = "too many changes of settings are waiting. Try again."
+"""Refusal of a further change."""
 
 
 class OperatorRequests:
-    """Owns accounts, settings, acknowledgements and their journal entries; the cycle gets orders alone."""
+    """Owner of accounts, settings, acknowledgements and their journal entries; the cycle only gets orders."""
 
     def __init__(
-        self, server: RequestServer, path: Path, released: Released, hand_over: Callable[[Order], None]
+        self, server: RequestServer, path: Path, active: ActiveSettings, hand_over: Callable[[Order], None]
     ) -> None:
-        """`path`: of the settings file; `hand_over` gives an order to the cycle."""
+        """`path`: path of the settings file; `hand_over` gives an order to the cycle."""
         self._server, self._stop = server, threading.Event()
         self._status: StatusEvent | None = None
-        logins = Logins(lambda: released.settings.panel.logout_min * 60)
-        self._desk = OperatorDesk(released.settings.archive.folder, logins, hand_over, self._counts)
-        self._change = SettingsChange(path, released, hand_over, self._recipe, self._stop)
+        logins = Logins(lambda: active.settings.panel.logout_min * 60)
+        self._desk = OperatorDesk(
+            active.settings.archive.folder, logins, hand_over=hand_over, counts=self._counts
+        )
+        self._change = SettingsChange(path, active, hand_over=hand_over, recipe=self._recipe, stop=self._stop)
         self._answers: queue.SimpleQueue[tuple[bytes, Answer]] = queue.SimpleQueue()
         self._changes: queue.Queue[Callable[[], None]] = queue.Queue(MAX_CHANGES)
         try:
-            self._change.settle()
+            self._change.note_unfinished()
         except WeldgateError as error:
-            log.error("changes of the run before: %s", error)
+            log.error("changes of the previous run cannot be checked: %s", error)
         self._threads = [
             threading.Thread(target=self._run, name="requests", daemon=True),
             threading.Thread(target=self._make_changes, name="settings", daemon=True),
@@ -51,8 +55,8 @@ class OperatorRequests:
         for thread in self._threads:
             thread.start()
 
-    def saw(self, event: Event) -> None:
-        """Note what the cycle says of itself."""
+    def on_event(self, event: Event) -> None:
+        """Remember the last status of the cycle."""
         if isinstance(event, StatusEvent):
             self._status = event
 
@@ -66,8 +70,8 @@ class OperatorRequests:
         while not self._stop.is_set():
             try:
                 self._serve_once()
-            except Exception:  # the windows are served on, whatever one of them sent
-                log.exception("requests")
+            except Exception:  # a faulty request must not affect other windows
+                log.exception("requests could not be served")
         self._desk.close()
 
     def _serve_once(self) -> None:
@@ -78,7 +82,7 @@ class OperatorRequests:
         self._desk.tick()
 
     def _reply(self, sender: bytes, answer: Answer) -> None:
-        """Called from both threads; the socket belongs to one."""
+        """Queue an answer, from either thread; the socket belongs to one of them."""
         self._answers.put((sender, answer))
 
     def _queue_change(self, who: str, message: Message, reply: Reply) -> None:
@@ -104,7 +108,7 @@ class OperatorRequests:
             refusal = ""
         except WeldgateError as error:
             refusal = str(error)
-        except Exception:  # the next change has its turn
+        except Exception:  # the next change must be possible
             log.exception("settings were not changed")
         reply(Answer(message.request_id, refusal, logged_in=True))
 

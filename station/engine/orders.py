@@ -1,42 +1,45 @@
-"""What the cycle is asked to do next to parts; the thread that answers windows has checked who asks."""
+"""Orders of operators to the cycle; the rights of the user were checked before."""
 
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from station.engine.active_settings import Change
+from station.engine.active_settings import PreparedSettings
 
 MAX_WAITING = 1000
-"""Orders that a cycle which stands still is kept; the oldest are dropped first."""
+"""Number of orders that wait for a stalled cycle; the oldest are dropped first."""
 SLICE_S = 0.1
+"""Time between two checks whether waiting must end."""
 HUNG_S = 30.0
-"""Time that the cycle has to finish an order that it has taken."""
+"""Time within which the cycle must finish an order that it has taken."""
 
 
 class Ticket:
-    """Outcome of one order: taken and answered once by the cycle, or withdrawn before it was taken."""
+    """Outcome of one order: it is taken and answered once by the cycle, or withdrawn before it was taken."""
 
     def __init__(self) -> None:
         self._lock, self._answered = threading.Lock(), threading.Event()
         self._taken = self._withdrawn = False
         self.refusal = ""
-        """Why the order was refused; empty: it was carried out, or is not answered yet."""
+        """Reason of the refusal; empty if the order was carried out or is not answered yet."""
 
     def take(self) -> bool:
-        """Claim the order for the cycle. Return False if it was withdrawn."""
+        """Claim the order for the cycle; return False if it was withdrawn."""
         with self._lock:
             self._taken = not self._withdrawn
             return self._taken
 
     def answer(self, refusal: str) -> None:
-        """Say how it went; empty: the order was carried out."""
+        """Report the outcome: the reason of a refusal, or empty if the order was carried out."""
         self.refusal = refusal
         self._answered.set()
 
     def wait(self, patience_s: float, stop: threading.Event) -> str | None:
-        """Return the refusal, empty if carried out; None: it was not taken in time and is withdrawn."""
+        """Return the reason of a refusal, empty if carried out; None if it was withdrawn, not taken in time.
+
+        `patience_s`: time within which it must be taken; `stop` ends all waiting.
+        """
         waited_s = 0.0
         while not self._answered.wait(SLICE_S):
             waited_s += SLICE_S
@@ -47,74 +50,74 @@ class Ticket:
                     self._withdrawn = True
                     return None
             if waited_s > patience_s + HUNG_S:
-                return "the engine did not finish: see its log, and whether the change is in use"
+                return "the engine did not finish: check its log, and whether the change is active"
         return self.refusal
 
 
 @dataclass(frozen=True, slots=True)
-class TestPicture:
-    """Take an image of what lies there now and judge it; the PLC is not informed."""
+class TestImage:
+    """Order to take an image of what is in the nest now and judge it, without the PLC."""
 
     master: str = ""
-    """Serial of the master that lies there, if it is one."""
+    """Serial of the master in the nest; empty if it is not a master."""
     __test__ = False
 
 
 @dataclass(frozen=True, slots=True)
 class Service:
-    """Begin, renew or end service mode; it lapses unless it is renewed in time."""
+    """Order to begin, renew or end service mode; it lapses unless it is renewed in time."""
 
     who: str
-    bit: int = 0
-    """The one bit of STATUS to set by hand."""
-    look: bool = False
-    """Take setup images, one after the other."""
-    exposure_us: float | None = None
-    gain_db: float | None = None
-    """For the setup images; None: as the settings say."""
-    over: bool = False
-    """The work is done."""
+    bit: int = field(default=0, kw_only=True)
+    """Bit of STATUS to set by hand; 0: none."""
+    setup_images: bool = field(default=False, kw_only=True)
+    """True if setup images are to be taken, one after the other."""
+    exposure_us: float | None = field(default=None, kw_only=True)
+    """Exposure of the setup images; None: that of the settings."""
+    gain_db: float | None = field(default=None, kw_only=True)
+    """Gain of the setup images; None: that of the settings."""
+    ended: bool = field(default=False, kw_only=True)
+    """True to end service mode."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reload:
-    """Read the settings again: the file was edited by hand."""
+    """Order to read the settings file again, after it was edited by hand."""
 
-    asked_s: float = field(default_factory=time.time)
-    """Epoch seconds."""
     ticket: Ticket = field(default_factory=Ticket)
 
 
 @dataclass(frozen=True, slots=True)
 class UseSettings:
-    """Use changed settings that are loaded already, and put their file in place."""
+    """Order to make prepared settings active and to put their file in place."""
 
-    change: Change
+    prepared: PreparedSettings
     replace_file: Callable[[], None]
-    """Puts the prepared file in place, atomically. Raises SettingsError."""
+    """Puts the prepared file in place atomically. Raises SettingsError."""
     ticket: Ticket = field(default_factory=Ticket)
 
 
 @dataclass(frozen=True, slots=True)
 class ResetCounts:
-    """Set the counters back to 0."""
+    """Order to set the counters back to 0."""
 
     who: str
 
 
-Order = TestPicture | Service | Reload | UseSettings | ResetCounts
+Order = TestImage | Service | Reload | UseSettings | ResetCounts
+"""An order of an operator to the cycle."""
 
 
 class OrderQueue:
-    """Orders on their way from one thread to another; neither waits."""
+    """Queue of orders between two threads, neither of which ever waits."""
 
     def __init__(self) -> None:
         self._waiting: deque[Order] = deque(maxlen=MAX_WAITING)
 
     def put(self, order: Order) -> None:
-        """Hand over an order."""
+        """Put an order into the queue."""
         self._waiting.append(order)
 
     def take(self) -> list[Order]:
-        """Return all orders that were handed over since, the oldest first."""
+        """Take all orders out of the queue and return them, the oldest first."""
         return [self._waiting.popleft() for _ in range(len(self._waiting))]

@@ -1,4 +1,4 @@
-"""What the PLC is told of a record; pure."""
+"""Converts a record to the result for the PLC; pure."""
 
 from station.domain import Origin, Purpose, Verdict
 from station.plc.map.registers import ALL_SEGMENTS, ERROR_NOT_JUDGED, Flags, VerdictCode
@@ -7,7 +7,10 @@ from station.records import Record
 
 
 def verdict_code(record: Record, trusted: bool) -> VerdictCode:
-    """A replayed part or a master never releases anything, nor does a station that is not to be trusted."""
+    """Return the verdict for the PLC.
+
+    A replayed part or a master is never released, nor is any part while the station is not `trusted`.
+    """
     if record.verdict is Verdict.ERROR:
         return VerdictCode.ERROR
     if record.purpose is not Purpose.PART or record.origin is Origin.REPLAY:
@@ -17,7 +20,7 @@ def verdict_code(record: Record, trusted: bool) -> VerdictCode:
     return VerdictCode.NOK
 
 
-def answer(
+def plc_result(
     trigger: Trigger,
     record: Record,
     *,
@@ -25,7 +28,10 @@ def answer(
     drifting: bool,
     trusted: bool,
 ) -> Result:
-    """Return the result for a trigger."""
+    """Return the result to publish for a trigger.
+
+    `novel`, `drifting`: flags for the PLC; `trusted`: the self-checks allow an OK.
+    """
     inspection = record.inspection
     reason = 0 if inspection.reason is None else inspection.reason.code
     flags = (
@@ -39,8 +45,8 @@ def answer(
         inspection_id=record.inspection_id,
         reason=reason,
         error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
-        seg_scores=tuple(round(min(max(s.nok, 0.0), 1.0) * 10_000) for s in inspection.scores),
-        seg_nok_mask=sum(1 << i for i, bad in enumerate(inspection.nok) if bad),
+        seg_scores=tuple(round(min(max(score.nok, 0.0), 1.0) * 10_000) for score in inspection.scores),
+        seg_nok_mask=sum(1 << segment for segment, rejected in enumerate(inspection.nok) if rejected),
         seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
-        flags=Flags(sum(flag for flag, on in flags if on)),
+        flags=Flags(sum(flag for flag, active in flags if active)),
     )

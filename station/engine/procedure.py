@@ -1,6 +1,6 @@
-"""The one procedure for a part, a test image and a master: grab, judge, record, answer, show.
+"""Procedure for a part, a test image or a master: grab, judge, record, answer the PLC, show.
 
-A verdict is published only after its record is durable; whatever goes wrong on the way ends in ERROR.
+A verdict is published only after its record is durable; every error on the way ends in the verdict ERROR.
 """
 
 import logging
@@ -16,9 +16,9 @@ from station.defects import Reason
 from station.domain import Frame, Inspection, Origin, Purpose, Timing
 from station.engine.alarm_log import AlarmLog
 from station.engine.listener import Listener
-from station.engine.plc_result import answer
-from station.engine.recording import keep, mark_shown, unkept
-from station.engine.self_checks import Watch
+from station.engine.plc_result import plc_result
+from station.engine.recording import mark_shown, unrecorded, write_record
+from station.engine.self_checks import SelfChecks
 from station.inspection.inspector import Inspector
 from station.inspection.loading import Loaded
 from station.plc.map.codes import ERROR_DEADLINE
@@ -30,21 +30,21 @@ log = logging.getLogger("weldgate.cycle")
 
 
 @dataclass(frozen=True, slots=True)
-class Answered:
+class PlcAnswer:
     """What the PLC reads of an inspection."""
 
     verdict: VerdictCode
     shown: bool
-    """The result was published in time."""
+    """True if the result was published in time."""
     publish_ms: float
 
 
-NOT_ANSWERED = Answered(VerdictCode.NONE, shown=False, publish_ms=0.0)
-"""Outcome of an inspection that a person asked for: the PLC reads nothing of it."""
+NO_PLC_ANSWER = PlcAnswer(VerdictCode.NONE, shown=False, publish_ms=0.0)
+"""Answer for an inspection that an operator requested: the PLC reads nothing of it."""
 
 
 class Procedure:
-    """Inspects what lies in the nest, for the PLC or for a person at the station."""
+    """Inspects what is in the nest, for the PLC or for an operator."""
 
     def __init__(
         self,
@@ -53,30 +53,30 @@ class Procedure:
         origin: Origin,
         line: Line,
         archive: Archive,
-        watch: Watch,
+        self_checks: SelfChecks,
         listener: Listener,
         alarm_log: AlarmLog,
         check_in: Callable[[], None],
     ) -> None:
-        """`origin`: where frames come from; `check_in` reports the station's health to the line."""
+        """`origin`: origin of the camera's frames; `check_in` reports the station's health to the line."""
         self._camera, self._origin = camera, origin
         self._line, self._check_in = line, check_in
-        self._archive, self._watch = archive, watch
+        self._archive, self._self_checks = archive, self_checks
         self._listener, self._alarm_log = listener, alarm_log
 
-    def part(self, trigger: Trigger, loaded: Loaded) -> None:
+    def inspect_part(self, trigger: Trigger, loaded: Loaded) -> None:
         """Inspect the part or master of a trigger and answer the PLC."""
         self._inspect(self._grab_for(trigger), self._triggered(trigger), loaded, trigger)
 
-    def test_image(self, master: str, loaded: Loaded) -> None:
-        """Inspect what lies in the nest now, a `master` if named; the PLC reads nothing and nothing is counted."""
+    def inspect_now(self, master: str, loaded: Loaded) -> None:
+        """Inspect what is in the nest now, without the PLC; `master`: serial of a master, or empty."""
         purpose = Purpose.GOLDEN if master else Purpose.TEST
         self._inspect(self._grab(), Part(master, 0, self._origin, purpose), loaded, None)
 
-    def unanswered(self, trigger: Trigger, loaded: Loaded) -> None:
-        """Show ERROR for a trigger whose inspection failed, so that no old verdict stays on the screen."""
-        self._alarm_log.passing(ERROR_DEADLINE, f"trigger {trigger.trigger_id}, {trigger.serial}")
-        record = unkept(Inspection.error(Reason.INTERNAL), self._triggered(trigger), loaded.provenance)
+    def show_error(self, trigger: Trigger, loaded: Loaded) -> None:
+        """Show ERROR for a trigger whose inspection failed, so that no old verdict stays in the window."""
+        self._alarm_log.add_event(ERROR_DEADLINE, f"trigger {trigger.trigger_id}, {trigger.serial}")
+        record = unrecorded(Inspection.error(Reason.INTERNAL), self._triggered(trigger), loaded.provenance)
         self._listener.event(
             PartEvent(
                 at_s=time.monotonic(),
@@ -90,26 +90,26 @@ class Procedure:
         )
 
     def _inspect(self, grab: Grab, part: Part, loaded: Loaded, trigger: Trigger | None) -> None:
-        """Judge, record, answer and show what was grabbed; without a `trigger` nothing is answered."""
+        """Judge, record, answer and show what was grabbed; without a `trigger` the PLC is not answered."""
         pending = self._archive.begin(grab.frame)
         inspection = _judge(grab, loaded.inspector)
         start = time.perf_counter()
         if grab.frame is not None:
             part = replace(part, origin=grab.frame.origin)
-        record = keep(self._archive, pending, inspection, part, provenance=loaded.provenance)
+        record = write_record(self._archive, pending, inspection, part, provenance=loaded.provenance)
         record_ms = _ms_since(start)
-        self._watched(record, trigger)
+        self._update_self_checks(record, trigger)
         novel = loaded.inspector.is_novel(record.inspection)
-        answered = NOT_ANSWERED if trigger is None else self._answer(trigger, record, novel)
-        mark_shown(self._archive, record, answered.shown)
+        answer = NO_PLC_ANSWER if trigger is None else self._answer_plc(trigger, record, novel)
+        mark_shown(self._archive, record, answer.shown)
         event = PartEvent(
             at_s=time.monotonic(),
             record=record,
             novel=novel,
-            drift=self._watch.drift,
-            told=answered.verdict,
+            drift=self._self_checks.drift,
+            told=answer.verdict,
             record_ms=record_ms,
-            publish_ms=answered.publish_ms,
+            publish_ms=answer.publish_ms,
         )
         self._show(grab.frame, event)
 
@@ -118,7 +118,7 @@ class Procedure:
         return Part(trigger.serial, trigger.trigger_id, self._origin, purpose)
 
     def _grab_for(self, trigger: Trigger) -> Grab:
-        """Grab the part of this trigger; no frame if the trigger is over and another part may lie there."""
+        """Grab the part of this trigger; no frame if the trigger has ended and another part may be there."""
         if not self._line.awaits_result(trigger):
             return Grab(None, Reason.ABORTED, None)
         grab = self._grab()
@@ -126,31 +126,31 @@ class Procedure:
         return grab
 
     def _grab(self) -> Grab:
-        """Grab with the exposure of the settings, never with one that somebody tries by hand."""
+        """Grab with the exposure of the settings, never with one that is tried by hand."""
         self._camera.adjust(None, None)
         return self._camera.grab()
 
-    def _watched(self, record: Record, trigger: Trigger | None) -> None:
-        """Let the station watch itself by this record; test images do not count for the drift."""
+    def _update_self_checks(self, record: Record, trigger: Trigger | None) -> None:
+        """Update the self-checks by this record; test images do not count for the drift."""
         if trigger is not None:
-            self._watch.part(record.inspection)
+            self._self_checks.part_judged(record.inspection)
         if record.purpose is Purpose.GOLDEN:
-            self._watch.master(record.serial, record.verdict)
+            self._self_checks.master_judged(record.serial, record.verdict)
 
-    def _answer(self, trigger: Trigger, record: Record, novel: bool) -> Answered:
-        """Publish the result of a trigger; alarms and the log say what was wrong with it."""
+    def _answer_plc(self, trigger: Trigger, record: Record, novel: bool) -> PlcAnswer:
+        """Publish the result of a trigger; problems with it become alarm events and log entries."""
         self._check_in()
         start = time.perf_counter()
-        drifting, trusted = self._watch.drifting, self._watch.trusted
-        result = answer(trigger, record, novel=novel, drifting=drifting, trusted=trusted)
+        drifting, trusted = self._self_checks.drifting, self._self_checks.trusted
+        result = plc_result(trigger, record, novel=novel, drifting=drifting, trusted=trusted)
         shown = self._line.publish(result)
         publish_ms = _ms_since(start)
         if result.error_code or not shown:
             code = result.error_code if shown else self._line.state().error_code or ERROR_DEADLINE
-            self._alarm_log.passing(code, f"part {record.inspection_id}")
+            self._alarm_log.add_event(code, f"part {record.inspection_id}")
         if not shown:
             log.warning(
-                "part %d, %s: came too late, the PLC was not shown its verdict %s",
+                "part %d, %s: verdict %s came too late for the PLC",
                 record.inspection_id,
                 record.serial,
                 record.verdict,
@@ -162,7 +162,7 @@ class Procedure:
                 record.serial,
                 record.inspection.novelty,
             )
-        return Answered(result.verdict if shown else VerdictCode.ERROR, shown, publish_ms)
+        return PlcAnswer(result.verdict if shown else VerdictCode.ERROR, shown, publish_ms)
 
     def _show(self, frame: Frame | None, event: PartEvent) -> None:
         self._listener.event(event)
@@ -177,7 +177,7 @@ def _judge(grab: Grab, inspector: Inspector) -> Inspection:
         return Inspection.error(grab.reason or Reason.INTERNAL, timing=timing)
     try:
         return inspector.inspect(grab.frame.image, grab.grab_ms)
-    except Exception:  # the gate must answer: any fault is "not judged"
+    except Exception:  # the PLC needs an answer: a part with any fault is "not judged"
         log.exception("inspection failed")
         return Inspection.error(Reason.INTERNAL, timing=timing)
 

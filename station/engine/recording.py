@@ -1,4 +1,4 @@
-"""The archive as the gate needs it: a record that cannot be kept is one that says ERROR, and nothing is raised."""
+"""Writes records for the cycle: a part whose record cannot be written becomes ERROR, nothing is raised."""
 
 import logging
 from datetime import UTC, datetime
@@ -12,7 +12,7 @@ from station.records import Part, Provenance, Record
 log = logging.getLogger("weldgate.recorder")
 
 
-def keep(
+def write_record(
     archive: Archive,
     pending: Pending,
     inspection: Inspection,
@@ -20,19 +20,19 @@ def keep(
     *,
     provenance: Provenance,
 ) -> Record:
-    """The durable record, or, if it cannot be made durable, one in memory that says ERROR."""
+    """Return the durable record, or an unrecorded one with verdict ERROR if it could not be written."""
     try:
         return archive.commit(pending, inspection, part, provenance, now=datetime.now(UTC))
     except RecordError as error:
         log.error("%s", error)
-    except Exception:  # the gate must answer, and without a record never with a verdict
+    except Exception:  # the PLC needs an answer, and without a record it must not be a verdict
         log.exception("the record could not be written")
     failed = Inspection.error(Reason.RECORD_FAILED, inspection.ring, inspection.quality, inspection.timing)
-    return unkept(failed, part, provenance)
+    return unrecorded(failed, part, provenance)
 
 
-def unkept(failed: Inspection, part: Part, provenance: Provenance) -> Record:
-    """In memory alone, with the number 0."""
+def unrecorded(failed: Inspection, part: Part, provenance: Provenance) -> Record:
+    """Return a record that exists in memory only and has the number 0."""
     return Record(
         inspection_id=0,
         serial=part.serial,
@@ -49,7 +49,7 @@ def unkept(failed: Inspection, part: Part, provenance: Provenance) -> Record:
 
 
 def mark_shown(archive: Archive, record: Record, shown: bool) -> None:
-    """Whether the PLC was shown the verdict."""
+    """Note in the index whether the PLC could read the verdict."""
     try:
         archive.mark_shown(record.inspection_id, shown)
     except RecordError as error:

@@ -1,4 +1,4 @@
-"""Which level each request needs: the one table by which the engine allows and refuses."""
+"""Access rights: the level that each request needs."""
 
 from collections.abc import Mapping
 
@@ -38,16 +38,16 @@ NEEDED: Mapping[type[Request], Level | None] = {
     SaveUser: Level.ADMIN,
     RemoveUser: Level.ADMIN,
 }
-"""Level that a kind of request needs at least; None: no login.
+"""Minimum level for each kind of request; None: no login.
 
-A review that seconds the one of another person needs QUALITY: `give` checks that.
+A second review, of a part that another user has reviewed, needs QUALITY; `save_review` checks that.
 """
 CHANGES: Mapping[str, Level] = {"camera": Level.SETTER, "recipes": Level.QUALITY}
-"""Level that a change of these settings needs at least; others cannot be changed by request."""
+"""Minimum level for a change of these settings; others cannot be changed by request."""
 
 
 def needed(request: Request) -> Level | None:
-    """Return the level that a request needs; None: no login. Raises SettingsError if nobody may ask that."""
+    """Return the level that a request needs; None: no login. Raises SettingsError if it is never allowed."""
     level = NEEDED[type(request)]
     if level is None or not isinstance(request, ChangeSettings):
         return level
@@ -60,7 +60,7 @@ def needed(request: Request) -> Level | None:
 
 
 def check(request: Request, user: User | None) -> None:
-    """Raise LoginError if `user` (None: no login) may not ask for that, SettingsError if nobody may."""
+    """Raise LoginError if `user` (None: no login) may not request this, SettingsError if no user may."""
     level = needed(request)
     if level is not None and (user is None or user.level < level):
         raise LoginError(f"a login of the level {level.name.lower()} is needed")

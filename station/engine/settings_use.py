@@ -1,49 +1,54 @@
-"""Uses changed settings at a moment with no part in work: device first, then the file, then the verdicts."""
+"""Makes changed settings active at a moment without a part in progress: first the camera, then the file."""
 
 import logging
 from collections.abc import Callable
 
 from station.camera.reconnecting import ReconnectingCamera
 from station.channel.requests import FAULT
-from station.engine.active_settings import Released
+from station.engine.active_settings import ActiveSettings
 from station.engine.orders import UseSettings
 from station.errors import SettingsError, WeldgateError
 from station.inspection.loading import Loaded, prepare
 
 log = logging.getLogger("weldgate.settings")
 
-RELOAD_REFUSED = "the settings file cannot be used: see the engine's log; the settings before stay in use"
+RELOAD_REFUSED = "the settings file cannot be used: see the engine's log. The previous settings stay active."
+"""Refusal of a settings file."""
 CAMERA_REFUSES = "the camera cannot be used with these values: see the engine's log"
+"""Refusal of settings with which the camera could not be opened."""
 
 
 def use_settings(
     order: UseSettings,
-    released: Released,
+    *,
+    active: ActiveSettings,
     camera: ReconnectingCamera,
     number: int,
     use: Callable[[Loaded], None],
 ) -> None:
     """Carry out the order, or leave settings, file and camera as they were; answer its ticket either way.
 
-    `number`: of the recipe in use now; `use` judges by a loaded recipe from then on.
+    `number`: number of the active recipe; `use` makes a loaded recipe the active one.
     """
     refusal = FAULT
     try:
-        change = order.change
-        loaded = change.loaded if change.loaded.number == number else prepare(change.settings, number)
-        if change.camera is not None and not camera.exchange(change.camera):
+        prepared = order.prepared
+        loaded = prepared.loaded
+        if loaded.number != number:
+            loaded = prepare(prepared.settings, number)
+        if prepared.camera is not None and not camera.replace(prepared.camera):
             raise SettingsError(CAMERA_REFUSES)
         try:
             order.replace_file()
         except SettingsError:
-            if change.camera is not None:
-                camera.exchange(released.camera())
+            if prepared.camera is not None:
+                camera.replace(active.make_camera())
             raise
-        released.accept(change)
+        active.activate(prepared)
     except WeldgateError as error:
         log.error("changed settings are not used: %s", error)
         refusal = str(error)
-    except Exception:  # the station continues with the settings that it has
+    except Exception:  # the station continues with its present settings
         log.exception("changed settings are not used")
     else:
         refusal = ""

@@ -1,4 +1,4 @@
-"""Opens what the engine needs and reports every failure at once."""
+"""Starts the engine: opens everything that it needs and reports all failures at once."""
 
 import logging
 import signal
@@ -18,13 +18,13 @@ from station.camera.reconnecting import ReconnectingCamera
 from station.channel.events import Event
 from station.channel.zeromq import Publisher, RequestServer
 from station.domain import Purpose, Verdict
-from station.engine.active_settings import Released
+from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog
 from station.engine.cycle import Cycle
 from station.engine.listener import Listener
 from station.engine.operator_requests import OperatorRequests
 from station.engine.orders import OrderQueue
-from station.engine.self_checks import Master, Watch
+from station.engine.self_checks import Master, SelfChecks
 from station.errors import WeldgateError
 from station.inspection.loading import Loaded, prepare
 from station.plc.bus_log import BusLog
@@ -42,13 +42,14 @@ Opened = TypeVar("Opened")
 def make_cycle(
     settings: Settings,
     loaded: Loaded,
+    *,
     line: Line,
     archive: Archive,
     listener: Listener,
     alarm_log: AlarmLog,
-    released: Released | None = None,
+    active: ActiveSettings | None = None,
 ) -> Cycle:
-    """Return the cycle that the settings describe; `released`: settings in use, which may change meanwhile."""
+    """Return the cycle that the settings describe; `active`: active settings that others may change."""
     golden = settings.golden
     return Cycle(
         camera=ReconnectingCamera(make_camera(settings.camera), settings.camera.reconnect_s),
@@ -56,8 +57,8 @@ def make_cycle(
         line=line,
         archive=archive,
         loaded=loaded,
-        released=released or Released(settings, lambda: settings, make_camera),
-        watch=Watch(
+        active=active or ActiveSettings(settings, lambda: settings, make_camera),
+        self_checks=SelfChecks(
             loaded,
             {
                 serial: _master(settings.archive.folder, serial, Verdict(found))
@@ -72,7 +73,7 @@ def make_cycle(
 
 
 def _master(folder: Path, serial: str, expected: Verdict) -> Master:
-    """With its last check before this start."""
+    """Return a master with its last check before this start."""
     checks = find(folder, Query(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=1))
     if not checks:
         return Master(expected)
@@ -82,7 +83,7 @@ def _master(folder: Path, serial: str, expected: Verdict) -> Master:
 
 
 def run_engine(path: Path) -> None:
-    """Run by a settings file until SIGINT or SIGTERM. Raises WeldgateError naming all that failed at start."""
+    """Run the engine until SIGINT or SIGTERM. Raises WeldgateError that names everything that failed."""
     settings = load(path)
     stop = threading.Event()
 
@@ -95,18 +96,18 @@ def run_engine(path: Path) -> None:
     with ExitStack() as stack:
         problems: list[str] = []
 
-        def tried(make: Callable[[], Opened]) -> Opened | None:
+        def attempt(make: Callable[[], Opened]) -> Opened | None:
             try:
                 return make()
             except WeldgateError as error:
                 problems.append(str(error))
                 return None
 
-        loaded = tried(lambda: prepare(settings, 1))
-        publisher = tried(lambda: stack.enter_context(closing(Publisher(settings.channel))))
-        archive = tried(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
+        loaded = attempt(lambda: prepare(settings, 1))
+        publisher = attempt(lambda: stack.enter_context(closing(Publisher(settings.channel))))
+        archive = attempt(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
         bus = (
-            tried(
+            attempt(
                 lambda: stack.enter_context(
                     closing(BusLog(settings.archive.folder, settings.archive.bus_days))
                 )
@@ -116,7 +117,7 @@ def run_engine(path: Path) -> None:
         )
         if archive:
             stack.enter_context(closing(Housekeeping(settings.archive.folder, settings.archive.keep)))
-        server = tried(lambda: stack.enter_context(closing(RequestServer(settings.channel))))
+        server = attempt(lambda: stack.enter_context(closing(RequestServer(settings.channel))))
         if (
             problems
             or loaded is None
@@ -130,20 +131,28 @@ def run_engine(path: Path) -> None:
         stack.callback(line.stop)
         line.start()
         for change in adjustments.words(path):
-            log.warning("changed at the station, over %s: %s", path.name, change)
+            log.warning("changed at the station, overrides %s: %s", path.name, change)
         log.info(
-            "station up: model %s, PLC %s on port %d",
+            "station started: model %s, PLC %s on port %d",
             loaded.provenance.model_version,
             settings.plc.mode,
             line.port,
         )
         alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder)))
-        released, orders = Released(settings, lambda: load(path), make_camera), OrderQueue()
-        requests = stack.enter_context(closing(OperatorRequests(server, path, released, orders.put)))
+        active, orders = ActiveSettings(settings, lambda: load(path), make_camera), OrderQueue()
+        requests = stack.enter_context(closing(OperatorRequests(server, path, active, orders.put)))
 
-        def heard(event: Event) -> None:
+        def on_event(event: Event) -> None:
             publisher.send(event)
-            requests.saw(event)
+            requests.on_event(event)
 
-        listener = Listener(heard, publisher.show, orders.take)
-        make_cycle(settings, loaded, line, archive, listener, alarm_log, released).run(stop)
+        cycle = make_cycle(
+            settings,
+            loaded,
+            line=line,
+            archive=archive,
+            listener=Listener(on_event, publisher.show, orders.take),
+            alarm_log=alarm_log,
+            active=active,
+        )
+        cycle.run(stop)

@@ -1,4 +1,4 @@
-"""Reports how the station is, several times a second: alarms to their log, everything to the window."""
+"""Reports the station's state several times per second: alarms to their log, everything to the window."""
 
 import time
 
@@ -6,7 +6,7 @@ from station.camera.reconnecting import ReconnectingCamera
 from station.channel.events import StatusEvent
 from station.domain import Origin
 from station.engine.alarm_log import AlarmLog
-from station.engine.health import Seen, alarms
+from station.engine.health import StationState, alarms
 from station.engine.listener import Listener
 from station.plc.port import Line
 
@@ -15,7 +15,7 @@ STATUS_S = 0.25
 
 
 class StatusReport:
-    """Sends what was found of the station; how often it is asked does not matter."""
+    """Sender of the reports; it may be called more often than reports are sent."""
 
     def __init__(
         self,
@@ -26,32 +26,31 @@ class StatusReport:
         listener: Listener,
         alarm_log: AlarmLog,
     ) -> None:
-        """`origin`: where the camera's frames come from."""
+        """`origin`: origin of the camera's frames."""
         self._camera, self._origin, self._line = camera, origin, line
         self._listener, self._alarm_log = listener, alarm_log
         self._started_s, self._sent_s = time.monotonic(), 0.0
 
-    def send(self, seen: Seen, reloaded_s: float) -> None:
-        """Report `seen` if it is time; `reloaded_s`: epoch seconds of the last request to reload settings."""
+    def send(self, state: StationState) -> None:
+        """Report the state of the station if it is time."""
         now_s = time.monotonic()
         if now_s - self._sent_s < STATUS_S:
             return
         self._sent_s = now_s
-        active = alarms(seen)
+        active = alarms(state)
         command_words, status_words = self._line.windows()
-        self._alarm_log.lasting(active)
+        self._alarm_log.set_active(active)
         self._listener.event(
             StatusEvent(
                 at_s=now_s,
                 started_s=self._started_s,
-                reloaded_s=reloaded_s,
-                camera_there=self._camera.there,
+                camera_there=self._camera.connected,
                 camera_message=self._camera.message,
                 origin=self._origin,
                 alarms=tuple(int(code) for code in active),
-                recipe=seen.recipe,
-                config_crc=seen.config_crc,
-                service=seen.service,
+                recipe=state.recipe,
+                config_crc=state.config_crc,
+                service=state.service,
                 line=self._line.state(),
                 command_words=command_words,
                 status_words=status_words,

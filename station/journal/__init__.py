@@ -1,1 +1,1 @@
-"""What people and the station did besides inspecting parts: journal, users, reviews."""
+"""Actions of people and of the station besides inspecting parts: journal, users, reviews."""

@@ -1,4 +1,4 @@
-"""Writes the journal: for the engine alone; windows read it and ask the engine."""
+"""Writes the journal; used by the engine only, windows send requests to the engine."""
 
 import sqlite3
 from contextlib import closing
@@ -21,18 +21,33 @@ SCHEMA = (
     before TEXT NOT NULL, after TEXT NOT NULL, reason TEXT NOT NULL, chain TEXT NOT NULL
 )""",
     "CREATE INDEX IF NOT EXISTS entries_kind ON entries (kind, subject, number)",
-    "CREATE TRIGGER IF NOT EXISTS entries_stay BEFORE DELETE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
-    "CREATE TRIGGER IF NOT EXISTS entries_same BEFORE UPDATE ON entries BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
+    "CREATE TRIGGER IF NOT EXISTS entries_stay BEFORE DELETE ON entries "
+    "BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
+    "CREATE TRIGGER IF NOT EXISTS entries_same BEFORE UPDATE ON entries "
+    "BEGIN SELECT RAISE(ABORT, 'the journal only grows'); END",
 )
-"""Statements that make the journal."""
+"""SQL statements that create the journal."""
 
 
 def append(
-    folder: Path, kind: Kind, who: str, subject: str = "", before: str = "", after: str = "", reason: str = ""
+    folder: Path,
+    kind: Kind,
+    who: str,
+    subject: str = "",
+    *,
+    before: str = "",
+    after: str = "",
+    reason: str = "",
 ) -> Entry:
-    """Write an entry durably. Raises RecordError; then what it tells of must not be done."""
+    """Write an entry durably and return it. Raises RecordError; then the action must not be done."""
     entry = Entry(
-        datetime.now(UTC).isoformat(timespec="milliseconds"), kind, who, subject, before, after, reason
+        at=datetime.now(UTC).isoformat(timespec="milliseconds"),
+        kind=kind,
+        who=who,
+        subject=subject,
+        before=before,
+        after=after,
+        reason=reason,
     )
     try:
         with closing(sqlite3.connect(folder / NAME, timeout=PATIENCE_S, isolation_level=None)) as connection:

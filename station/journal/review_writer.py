@@ -1,4 +1,4 @@
-"""Writes what a person says of a verdict afterwards: for the engine alone."""
+"""Writes reviews of verdicts; used by the engine only."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,7 +10,7 @@ from station.journal.journal_writer import append
 from station.journal.reviews import Opinion, possible, reviews
 
 
-def give(
+def save_review(
     folder: Path,
     who: str,
     *,
@@ -21,14 +21,14 @@ def give(
     comment: str = "",
     marks: Mapping[int, Reason] | None = None,
 ) -> None:
-    """Note a review. Raises ValueError if it does not fit the verdict, LoginError, RecordError.
+    """Save a review. Raises ValueError if it does not fit the verdict, LoginError, RecordError.
 
-    `may_second`: whether this person's level allows a second review; `marks`: where a defect was missed.
+    `may_second`: this user's level allows a second review; `marks`: missed defect kind by segment.
     """
     if opinion not in possible(verdict) or (marks and opinion is not Opinion.MISSED):
-        raise ValueError(f"{opinion} cannot be said of {verdict}")
-    before = reviews(folder).get(inspection_id)
-    if not may_second and before is not None and set(before.opinions) - {who}:
+        raise ValueError(f"the opinion '{opinion}' does not fit the verdict {verdict}")
+    previous = reviews(folder).get(inspection_id)
+    if not may_second and previous is not None and set(previous.opinions) - {who}:
         raise LoginError("the second review needs the level quality")
     where = ", ".join(f"{number} {kind}" for number, kind in sorted((marks or {}).items()))
     append(
@@ -36,7 +36,7 @@ def give(
         Kind.REVIEW,
         who,
         str(inspection_id),
-        verdict,
-        f"{opinion}: {where}" if where else opinion,
-        comment,
+        before=verdict,
+        after=f"{opinion}: {where}" if where else opinion,
+        reason=comment,
     )

@@ -1,4 +1,4 @@
-"""What people say of verdicts afterwards. The verdict itself is never changed; an opinion counts once two people share it."""
+"""Reviews of verdicts; they never change a verdict, and an opinion counts once two people share it."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -9,7 +9,7 @@ from station.journal.journal import Kind, entries
 
 
 class Opinion(StrEnum):
-    """Of one verdict."""
+    """Opinion on one verdict."""
 
     RIGHT = "right"
     FALSE_CALL = "false call"
@@ -19,7 +19,7 @@ class Opinion(StrEnum):
 
 
 class State(StrEnum):
-    """How far a review is."""
+    """State of the review of one part."""
 
     NONE = "not reviewed"
     ONE = "reviewed once"
@@ -28,20 +28,20 @@ class State(StrEnum):
 
 
 Marks = dict[int, Reason]
-"""Kind of the defect that was missed in a segment, by its number."""
+"""Missed defect kind by segment number."""
 
 
 @dataclass(frozen=True, slots=True)
 class Review:
-    """All opinions of one part: the last of each person."""
+    """Opinions on one part, the last one of each person, by name."""
 
     opinions: dict[str, Opinion]
     marks: dict[str, Marks] = field(default_factory=dict)
-    """Where they say that a defect was missed."""
+    """Missed defects by name of the person."""
 
     @property
     def state(self) -> State:
-        """Two people must say the same, and nobody otherwise."""
+        """State of the review; agreed if at least two people share one opinion and none has another."""
         if not self.opinions:
             return State.NONE
         if len(set(self.opinions.values())) > 1:
@@ -50,12 +50,12 @@ class Review:
 
     @property
     def agreed(self) -> Opinion | None:
-        """What two people say."""
+        """Opinion on which people agree; None if they do not."""
         return next(iter(self.opinions.values())) if self.state is State.AGREED else None
 
     @property
     def agreed_marks(self) -> Marks:
-        """What all of them see in the same segment."""
+        """Missed defects on which all of them agree."""
         if self.agreed is not Opinion.MISSED:
             return {}
         first, *others = (self.marks.get(who, {}) for who in self.opinions)
@@ -67,14 +67,13 @@ class Review:
 
 
 def possible(verdict: str) -> tuple[Opinion, ...]:
-    """Opinions that one can have of a verdict; none of a part that was not judged."""
-    return {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}.get(
-        verdict, ()
-    )
+    """Return the opinions that fit a verdict; none for a part that was not judged."""
+    fitting = {"OK": (Opinion.RIGHT, Opinion.MISSED), "NOK": (Opinion.RIGHT, Opinion.FALSE_CALL)}
+    return fitting.get(verdict, ())
 
 
 def reviews(folder: Path) -> dict[int, Review]:
-    """All reviewed parts. Raises RecordError."""
+    """Return the reviews of all reviewed parts by inspection id. Raises RecordError."""
     found: dict[int, Review] = {}
     for entry in entries(folder, (Kind.REVIEW,), newest_first=False):
         opinion, _, where = entry.after.partition(": ")

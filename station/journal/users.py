@@ -1,4 +1,4 @@
-"""Who may do what at the station: names and levels, kept in the journal; read here, `accounts` alone changes them."""
+"""Users of the station and their levels, stored in the journal; only `accounts` changes them."""
 
 import json
 from dataclasses import dataclass
@@ -9,28 +9,28 @@ from station.journal.journal import Kind, entries
 
 
 class Level(IntEnum):
-    """Rank of a user; each level may do what the ones before may."""
+    """Level of a user; each one has the rights of those before it."""
 
     OPERATOR = 1
     SETTER = 2
-    """Camera, service mode, masters."""
+    """May use camera, service mode and masters."""
     QUALITY = 3
-    """Thresholds, second reviews."""
+    """May change thresholds and give second reviews."""
     ADMIN = 4
-    """Users."""
+    """May change users."""
 
 
 @dataclass(frozen=True, slots=True)
 class User:
-    """Someone known to the station."""
+    """A user of the station."""
 
     name: str
     level: Level
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
-    """What the journal keeps of a user: the level, and a salted hash of the PIN."""
+class StoredUser:
+    """A user as stored in the journal: the level, and a salted hash of the PIN."""
 
     level: Level
     salt: str
@@ -38,14 +38,17 @@ class Kept:
 
 
 def users(folder: Path) -> list[User]:
-    """Return all who may log in, by name. Raises RecordError."""
-    return [User(name, kept.level) for name, kept in sorted(kept_users(folder).items())]
+    """Return all users, sorted by name. Raises RecordError."""
+    return [User(name, stored.level) for name, stored in sorted(stored_users(folder).items())]
 
 
-def kept_users(folder: Path) -> dict[str, Kept]:
-    """Return what the newest entry of each name says. Raises RecordError."""
+def stored_users(folder: Path) -> dict[str, StoredUser]:
+    """Return the users by name, each from its newest entry. Raises RecordError."""
     last: dict[str, str] = {}
     for entry in entries(folder, (Kind.USER,), newest_first=False):
         last[entry.subject] = entry.after
     found = {name: json.loads(after) for name, after in last.items() if after}
-    return {name: Kept(Level(k["level"]), k["salt"], k["hash"]) for name, k in found.items()}
+    return {
+        name: StoredUser(Level(stored["level"]), stored["salt"], stored["hash"])
+        for name, stored in found.items()
+    }

@@ -138,10 +138,7 @@ class ModbusLine:
         return self._state.command is not None and self._state.command.number == command.number
 
     def publish(self, result: Result) -> bool:
-        """Publish a result and return once the PLC can read it.
-
-        Returns False if it came too late or may not have reached the PLC.
-        """
+        """Publish a result; return True once the PLC can read it, False if it was too late or may be lost."""
         shown: Future[bool] = Future()
         self._offered = (result, shown)
         self._wake_loop()
@@ -197,10 +194,7 @@ class ModbusLine:
             await self._wire.close()
 
     async def _step(self) -> bool:
-        """Read the command window, step, publish the whole record, then act.
-
-        Returns whether another step must follow at once.
-        """
+        """Read, step, publish the whole record, then act; return whether to step again at once."""
         now_s, link = time.monotonic(), True
         try:
             self._command_words = await self._wire.read_command()
@@ -208,22 +202,15 @@ class ModbusLine:
         except LineError as error:
             link = False
             self._link_lost(error, now_s)
-        if (
-            self._lost_s is not None
-            and not link
-            and now_s - self._lost_s < min(self._times.plc_heartbeat_s or GRACE_S, GRACE_S)
-        ):
+        grace_s = min(self._times.plc_heartbeat_s or GRACE_S, GRACE_S)
+        if self._lost_s is not None and not link and now_s - self._lost_s < grace_s:
             return False
         offered, self._offered = (
             self._offered,
             None,
         )  # taken once: the cycle may offer the next one at any time
-        outcome = step(
-            self._state,
-            self._inputs(now_s, link, None if offered is None else offered[0]),
-            now_s,
-            self._times,
-        )
+        inputs = self._inputs(now_s, link, None if offered is None else offered[0])
+        outcome = step(self._state, inputs, now_s, self._times)
         self._count(outcome.state)
         self._state = outcome.state
         self._plan(outcome, offered)

@@ -245,7 +245,7 @@ def test_an_absent_camera_is_said_and_comes_back(fed: Fed) -> None:
 
 
 def test_an_empty_folder_is_said(tmp_path: Path) -> None:
-    with pytest.raises(CameraLost, match="holds no images"):
+    with pytest.raises(CameraLost, match="no images in this folder"):
         ReplayCamera(ReplaySettings(kind="replay", folder=tmp_path)).open()
 
 

@@ -39,7 +39,6 @@ def status(
     counts: Counts | None = None,
     at_s: float | None = None,
     started_s: float = 0.0,
-    reloaded_s: float = 0.0,
 ) -> StatusEvent:
     """`camera`: why it is not there; `at_s`: now, if not given."""
     bits = Status.ONLINE | Status.READY if offline is Offline.NONE else Status(0)
@@ -55,7 +54,6 @@ def status(
     return StatusEvent(
         at_s=time.monotonic() if at_s is None else at_s,
         started_s=started_s,
-        reloaded_s=reloaded_s,
         camera_there=not camera,
         camera_message=camera,
         origin=origin,

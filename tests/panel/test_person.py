@@ -115,7 +115,7 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     log_in(window, qtbot, "Ada", "1234")
     assert session.account.user is not None
     assert session.account.user.level is Level.ADMIN
-    save_user(folder, "Ada", "Quentin", Level.QUALITY, "2345")
+    save_user(folder, "Quentin", level=Level.QUALITY, pin="2345", by="Ada")
 
     # find a NOK, look at it, review it, the second person too
     window.go(PageKey.HISTORY)
@@ -231,8 +231,8 @@ def test_a_record_whose_image_was_deleted_is_shown_as_such(
 
 def test_five_wrong_pins_lock_a_user_and_rights_depend_on_the_level(window: Window, qtbot: QtBot) -> None:
     folder = window.session.received.folder
-    save_user(folder, "Ada", "Ada", Level.ADMIN, "1234")
-    save_user(folder, "Ada", "Sam", Level.SETTER, "3456")
+    save_user(folder, "Ada", level=Level.ADMIN, pin="1234", by="Ada")
+    save_user(folder, "Sam", level=Level.SETTER, pin="3456", by="Ada")
     for _ in range(5):
         setup = log_in(window, qtbot, "Sam", "0000")
         assert setup.login.problem.text() == "unknown name or wrong PIN"

@@ -66,7 +66,7 @@ def test_who_logs_in_ends_what_the_one_before_was_doing(window: Window, desk: De
     hold(session, qtbot, HoldService(bit=int(Status.OK)))
     log_in(session, desk, qtbot, "Bob", Level.OPERATOR)
     assert session.service.held is None
-    qtbot.waitUntil(lambda: desk.given[-1] == orders.Service("Ada", over=True), timeout=5000)
+    qtbot.waitUntil(lambda: desk.given[-1] == orders.Service("Ada", ended=True), timeout=5000)
     assert [(e.who, e.kind) for e in noted(session, Kind.LOGOUT)] == [("Ada", Kind.LOGOUT)]
     session.service.hold(HoldService())
     qtbot.waitUntil(lambda: refused == ["a login of the level setter is needed"], timeout=5000)
@@ -325,10 +325,10 @@ def test_an_answer_to_a_page_that_was_made_again_is_dropped(window: Window, desk
 def test_an_alarm_of_the_run_before_is_cleared_when_it_is_no_longer_active(tmp_path: Path) -> None:
     both = {int(Alarm.CAMERA_LOST), int(Alarm.PLC_SILENT)}
     first = AlarmLog(tmp_path)
-    first.lasting(both)
+    first.set_active(both)
     first.close()
     second = AlarmLog(tmp_path)
-    second.lasting({int(Alarm.PLC_SILENT)})
+    second.set_active({int(Alarm.PLC_SILENT)})
     second.close()
     kinds = [
         (e.kind, int(e.subject[3:], 16))
@@ -356,6 +356,6 @@ def test_an_unreadable_journal_is_logged_and_does_not_stop_the_engine(
 ) -> None:
     (tmp_path / "journal.sqlite").write_bytes(b"not a database, " * 100)
     log = AlarmLog(tmp_path)
-    log.lasting({int(Alarm.PLC_SILENT)})
+    log.set_active({int(Alarm.PLC_SILENT)})
     log.close()
     assert "journal.sqlite" in caplog.text

@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 from station.channel.preview import make_preview
 from station.channel.zeromq import Publisher, Subscriber
 from station.domain import Image, Ring
-from station.engine.orders import TestPicture
+from station.engine.orders import TestImage
 from station.errors import LineError
 from station.journal.users import Level
 from station.panel.look import theme
@@ -99,7 +99,7 @@ def test_the_button_asks_the_engine_for_a_test_image(
     qtbot.waitUntil(received, timeout=5000)
     assert desk.given == []
     qtbot.mouseClick(live(window).test, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: desk.given == [TestPicture()], timeout=5000)
+    qtbot.waitUntil(lambda: desk.given == [TestImage()], timeout=5000)
 
 
 def test_without_an_engine_it_says_so_and_shows_no_verdict(window: Window) -> None:

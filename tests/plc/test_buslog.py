@@ -171,5 +171,5 @@ def test_a_late_follower_gets_the_newest_alone(tmp_path: Path) -> None:
 
 def test_a_spoilt_line_is_said_in_one_line(tmp_path: Path) -> None:
     (tmp_path / "bus-2026-11-21.jsonl").write_text("{spoilt\n")
-    with pytest.raises(RecordError, match="cut off or changed"):
+    with pytest.raises(RecordError, match="truncated or modified"):
         tail_bus(tmp_path, ("", 0), 20)

@@ -1,4 +1,4 @@
-"""The station as client of a PLC that is mute, drops the link, takes half of a write, or has its windows elsewhere."""
+"""The station as client of a PLC that is silent, drops the link or takes half a write, at any addresses."""
 
 import asyncio
 import random
@@ -77,7 +77,7 @@ def ports() -> int:
 def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(
     at_write: int, forward: bool, ports: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """NOK and OK in turns: whatever is cut, an OK is only ever that of its own part, and the parts after it pass."""
+    """NOK and OK in turns: wherever the link is cut, OK is shown only for its own part; later parts pass."""
     monkeypatch.setattr("station.plc.wire.windows.RETRY_S", 0.05)
     windows = OwnWindows("127.0.0.1", ports)
     proxy = Proxy(ports, at_write, forward)
@@ -189,7 +189,7 @@ def test_windows_that_overlap_are_refused() -> None:
 
 
 def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(ports: int) -> None:
-    """Of a result that goes no bit may stay that the next status lacks: a READY left over would be taken for a new one."""
+    """No bit that the next status lacks may outlive a result: a stale READY would be taken for a new one."""
     rng, words = random.Random(7), STATUS_START + STATUS_WORDS
 
     async def publish_many() -> None:

@@ -1,4 +1,4 @@
-"""The handshake as a law: whatever the inputs and times, OK is only ever shown for a judged frame of that trigger."""
+"""The handshake as a law: for all inputs and times, OK is only shown for a judged frame of that trigger."""
 
 from dataclasses import replace
 

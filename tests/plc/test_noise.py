@@ -1,4 +1,4 @@
-"""Malformed, truncated, oversized and random frames by the hundred thousand: the station goes on, and no register shows a verdict."""
+"""Malformed, truncated, oversized and random frames: the station keeps running and shows no verdict."""
 
 import random
 import socket

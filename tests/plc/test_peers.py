@@ -1,4 +1,4 @@
-"""Peers that nobody here wrote: mbpoll and libmodbus."""
+"""Foreign peers: mbpoll and libmodbus."""
 
 import re
 import shutil

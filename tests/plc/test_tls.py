@@ -66,7 +66,7 @@ def test_a_plc_with_a_certificate_is_served_and_others_are_not(folder: Path, tmp
 
 
 def test_certificates_that_cannot_be_used_are_said_before_anything_runs(folder: Path, tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="no such file"):
+    with pytest.raises(SettingsError, match="file not found"):
         server_context(settings(tmp_path, "server"))
     wrong = TlsSettings(
         certificate_path=folder / "server.pem", key_path=folder / "client.key", ca_path=folder / "ca.pem"

@@ -25,7 +25,15 @@ from station.journal.users import Level, User, users
 
 def test_entries_are_found_by_kind_and_subject(tmp_path: Path) -> None:
     assert entries(tmp_path) == []
-    append(tmp_path, Kind.SETTING, "Ada", "hole_threshold", "0.46", "0.5", "too many false calls")
+    append(
+        tmp_path,
+        Kind.SETTING,
+        "Ada",
+        "hole_threshold",
+        before="0.46",
+        after="0.5",
+        reason="too many false calls",
+    )
     append(tmp_path, Kind.REVIEW, "Ada", "12", after="false call")
     append(tmp_path, Kind.REVIEW, "Bob", "13", after="confirmed")
     (entry,) = entries(tmp_path, (Kind.SETTING,))
@@ -45,7 +53,7 @@ def test_nothing_can_be_changed_or_removed_and_a_forger_is_found(
 ) -> None:
     open_index(tmp_path).close()
     for number in range(4):
-        append(tmp_path, Kind.SETTING, "Ada", f"key {number}", "1", "2", "because")
+        append(tmp_path, Kind.SETTING, "Ada", f"key {number}", before="1", after="2", reason="because")
     with closing(sqlite3.connect(tmp_path / NAME)) as connection:
         for forbidden in ("DELETE FROM entries", "UPDATE entries SET who = 'Eve'"):
             with pytest.raises(sqlite3.IntegrityError, match="only grows"):
@@ -55,7 +63,7 @@ def test_nothing_can_be_changed_or_removed_and_a_forger_is_found(
     with closing(sqlite3.connect(tmp_path / NAME)) as connection:
         connection.executescript("DROP TRIGGER entries_stay; DELETE FROM entries WHERE number = 2;")
     assert list(verify_journal(tmp_path)) == [
-        (f"{NAME}, entry 3", "was changed, or the one before it was taken out")
+        (f"{NAME}, entry 3", "was modified, or the entry before it was deleted")
     ]
     assert main(["records", "verify", str(tmp_path)]) == 1
     assert "entry 3" in capsys.readouterr().err
@@ -116,19 +124,19 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    save_user(tmp_path, "Ada", "Ada", Level.ADMIN, "1234")
-    save_user(tmp_path, "Ada", "Bob", Level.SETTER, "56789")
+    save_user(tmp_path, "Ada", level=Level.ADMIN, pin="1234", by="Ada")
+    save_user(tmp_path, "Bob", level=Level.SETTER, pin="56789", by="Ada")
     return tmp_path
 
 
 def test_users_come_go_and_change(folder: Path) -> None:
     assert users(folder) == [User("Ada", Level.ADMIN), User("Bob", Level.SETTER)]
     assert log_in(folder, "Bob", "56789") == User("Bob", Level.SETTER)
-    save_user(folder, "Ada", "Bob", Level.QUALITY, "0000")
+    save_user(folder, "Bob", level=Level.QUALITY, pin="0000", by="Ada")
     with pytest.raises(LoginError, match="wrong PIN"):
         log_in(folder, "Bob", "56789")
     log_out(folder, log_in(folder, "Bob", "0000"), "asked to")
-    remove_user(folder, "Ada", "Bob")
+    remove_user(folder, "Bob", by="Ada")
     assert users(folder) == [User("Ada", Level.ADMIN)]
     with pytest.raises(LoginError, match="unknown name or wrong PIN"):
         log_in(folder, "Bob", "0000")
@@ -147,9 +155,9 @@ def test_users_come_go_and_change(folder: Path) -> None:
 )
 def test_users_that_cannot_be_are_refused(folder: Path, name: str, level: Level, pin: str, said: str) -> None:
     with pytest.raises(LoginError, match=said):
-        save_user(folder, "Ada", name, level, pin)
+        save_user(folder, name, level=level, pin=pin, by="Ada")
     with pytest.raises(LoginError, match="at least one administrator"):
-        remove_user(folder, "Ada", "Ada")
+        remove_user(folder, "Ada", by="Ada")
 
 
 def test_five_wrong_pins_lock_for_a_minute_and_are_logged(

@@ -36,8 +36,8 @@ from station.channel.requests import (
 )
 from station.domain import Frame, Image, Origin
 from station.engine import orders
-from station.engine.logins import GONE_S, Logins
-from station.engine.operator_desk import FRESH_S, OTHER_SERVES, OperatorDesk, Reply
+from station.engine.logins import WINDOW_LOST_S, Logins
+from station.engine.operator_desk import FRESH_S, OTHER_IN_SERVICE, OperatorDesk, Reply
 from station.engine.rights import CHANGES, NEEDED, check, needed
 from station.engine.service_mode import LEASE_S
 from station.errors import LoginError, RecordError, SettingsError
@@ -90,7 +90,11 @@ class Desk:
     def __post_init__(self) -> None:
         logins = Logins(lambda: IDLE_S)
         self.desk = OperatorDesk(
-            self.folder, logins, self.given.append, lambda: Counts(3, 1, 0), lambda: self.now_s
+            self.folder,
+            logins,
+            hand_over=self.given.append,
+            counts=lambda: Counts(3, 1, 0),
+            clock=lambda: self.now_s,
         )
 
     def ask(self, request: Request, token: str = "", age_s: float = 0.0) -> Answer:
@@ -123,7 +127,7 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """A journal with one user of each level; PINs are slow to hash."""
     folder = tmp_path_factory.mktemp("people")
     for level in sorted(Level, reverse=True):
-        save_user(folder, "Ada", PEOPLE[level], level, PIN)
+        save_user(folder, PEOPLE[level], level=level, pin=PIN, by="Ada")
     append(folder, Kind.ALARM, "station", "16#3002")
 
     with closing(sqlite3.connect(folder / "journal.sqlite")) as connection:
@@ -257,7 +261,7 @@ def test_who_touches_nothing_is_logged_out_by_the_engine(desk: Desk) -> None:
     desk.wait(10)
     assert not desk.ask(StayLoggedIn(True), token).logged_in
     assert [(e.who, e.reason) for e in desk.noted(Kind.LOGOUT)] == [("Sam", "idle")]
-    assert desk.given[-1] == orders.Service("Sam", over=True)
+    assert desk.given[-1] == orders.Service("Sam", ended=True)
 
 
 def test_who_touches_something_stays(desk: Desk) -> None:
@@ -272,8 +276,8 @@ def test_a_window_that_is_gone_leaves_nobody_logged_in(desk: Desk) -> None:
     token = desk.log_in(Level.SETTER)
     desk.ask(HoldService(), token)
     desk.wait(LEASE_S + 0.1)
-    assert desk.given[-1] == orders.Service("Sam", over=True)
-    desk.wait(GONE_S)
+    assert desk.given[-1] == orders.Service("Sam", ended=True)
+    desk.wait(WINDOW_LOST_S)
     assert [(e.who, e.reason) for e in desk.noted(Kind.LOGOUT)] == [("Sam", "window closed")]
     assert desk.ask(ResetCounts(), token).refusal == "a login of the level setter is needed"
 
@@ -282,8 +286,8 @@ def test_who_logs_in_ends_what_the_one_before_was_doing(desk: Desk) -> None:
     token = desk.log_in(Level.SETTER)
     desk.ask(HoldService(bit=int(Status.OK)), token)
     second = desk.log_in(Level.OPERATOR, token)
-    assert desk.given[-1] == orders.Service("Sam", over=True)
-    assert [(e.who, e.reason) for e in desk.noted(Kind.LOGOUT)] == [("Sam", "another one logs in")]
+    assert desk.given[-1] == orders.Service("Sam", ended=True)
+    assert [(e.who, e.reason) for e in desk.noted(Kind.LOGOUT)] == [("Sam", "another user logged in")]
     assert not desk.ask(StayLoggedIn(True), token).logged_in
     assert desk.ask(HoldService(), second).refusal == "a login of the level setter is needed"
 
@@ -301,31 +305,31 @@ def test_whatever_is_done_by_hand_is_in_the_journal(desk: Desk) -> None:
     ):
         assert desk.ask(request, token).done
     assert [(e.who, e.subject, e.before, e.after) for e in desk.noted(Kind.SERVICE)] == [
-        ("Sam", "test picture", "", ""),
-        ("Sam", "test picture", "", "MASTER-1"),
+        ("Sam", "test image", "", ""),
+        ("Sam", "test image", "", "MASTER-1"),
         ("Sam", "service mode", "", "begins"),
         ("Sam", "bit by hand", "–", "READY"),
         ("Sam", "counters", "OK 3, NOK 1, ERROR 0", "0"),
         ("Sam", "service mode", "begins", "over"),
     ]
     assert desk.given == [
-        orders.TestPicture(),
-        orders.TestPicture("MASTER-1"),
+        orders.TestImage(),
+        orders.TestImage("MASTER-1"),
         orders.Service("Sam"),
-        orders.Service("Sam", look=True),
+        orders.Service("Sam", setup_images=True),
         orders.Service("Sam", bit=int(Status.READY)),
         orders.ResetCounts("Sam"),
-        orders.Service("Sam", over=True),
+        orders.Service("Sam", ended=True),
     ]
 
 
 def test_nobody_takes_service_mode_from_another(desk: Desk) -> None:
     first, second = desk.log_in(Level.SETTER), desk.log_in(Level.ADMIN)
     assert desk.ask(HoldService(), first).done
-    assert desk.ask(HoldService(), second).refusal == OTHER_SERVES
+    assert desk.ask(HoldService(), second).refusal == OTHER_IN_SERVICE
     assert desk.ask(EndService(), second).done
     assert desk.given == [orders.Service("Sam")], "it is not hers to end"
-    assert desk.ask(HoldService(bit=3), first).refusal == "3 is not one bit of STATUS"
+    assert desk.ask(HoldService(bit=3), first).refusal == "3 is not a single bit of STATUS"
     desk.ask(LogOut(), first)
     assert desk.ask(HoldService(), second).done
 
@@ -340,8 +344,9 @@ def test_an_alarm_is_acknowledged_once_it_is_in_the_journal(desk: Desk) -> None:
 
 def test_a_review_is_given_to_the_verdict_on_record(desk: Desk) -> None:
     bob, sam, quentin = (desk.log_in(level) for level in (Level.OPERATOR, Level.SETTER, Level.QUALITY))
-    assert desk.ask(GiveReview(99, Opinion.RIGHT), bob).refusal == "there is no part 99"
-    assert desk.ask(GiveReview(1, Opinion.MISSED), bob).refusal == "missed defect cannot be said of NOK"
+    assert desk.ask(GiveReview(99, Opinion.RIGHT), bob).refusal == "part 99 does not exist in the archive"
+    refusal = "the opinion 'missed defect' does not fit the verdict NOK"
+    assert desk.ask(GiveReview(1, Opinion.MISSED), bob).refusal == refusal
     assert desk.ask(GiveReview(1, Opinion.FALSE_CALL, "soot "), bob).done
     assert (
         desk.ask(GiveReview(1, Opinion.FALSE_CALL), sam).refusal
@@ -365,7 +370,7 @@ def test_an_engine_that_stops_logs_out_all(desk: Desk) -> None:
     for level in Level:
         desk.log_in(level)
     desk.desk.close()
-    assert [e.reason for e in desk.noted(Kind.LOGOUT)] == ["the engine stops"] * len(Level)
+    assert [e.reason for e in desk.noted(Kind.LOGOUT)] == ["engine stopped"] * len(Level)
 
 
 @given(st.lists(st.tuples(st.floats(0, 40), st.booleans()), max_size=30))
@@ -375,8 +380,8 @@ def test_a_login_lasts_while_its_window_is_heard_and_touched(steps: list[tuple[f
     heard = touched = now
     for wait_s, touch in steps:
         now += wait_s
-        lasts = now - heard <= GONE_S and now - touched <= 60.0
+        lasts = now - heard <= WINDOW_LOST_S and now - touched <= 60.0
         assert (logins.user(token, now) is user) is lasts
-        assert bool(logins.over(now)) is not lasts
-        logins.heard(token, touch, now)
+        assert bool(logins.ended(now)) is not lasts
+        logins.renew(token, touch, now)
         heard, touched = (now, now if touch else touched) if lasts else (heard, touched)

@@ -1,4 +1,4 @@
-"""Windows and the engine over the real channel: each request is answered, whoever is killed, floods or comes second."""
+"""Windows and engine over the real channel: every request is answered, even if windows are killed."""
 
 import time
 from collections.abc import Iterator
@@ -66,7 +66,7 @@ def window(desk: Desk) -> Iterator[PlainWindow]:
 
 
 def settings_noted(desk: Desk) -> list[tuple[str, str, str]]:
-    found = entries(desk.released.settings.archive.folder, (Kind.SETTING,), newest_first=False)
+    found = entries(desk.active.settings.archive.folder, (Kind.SETTING,), newest_first=False)
     return [(e.who, e.after, e.reason) for e in found]
 
 
@@ -81,7 +81,7 @@ def test_a_change_is_answered_once_it_is_in_use(desk: Desk, window: PlainWindow)
 
 
 def test_a_window_killed_in_any_step_of_a_change_leaves_the_old_settings_or_the_new_ones(desk: Desk) -> None:
-    """What a window does is to send one message and to hear one: it can be killed before, between and after."""
+    """A window sends one message and receives one: it can be killed before, between and after."""
     for step, expected in (
         ("before it has sent", OLD),
         ("before it has heard", NEW),
@@ -105,7 +105,7 @@ def test_a_request_cut_off_on_its_way_changes_nothing_and_ends_nothing(
     desk: Desk, window: PlainWindow
 ) -> None:
     context = zmq.Context()
-    settings = desk.released.settings.channel
+    settings = desk.active.settings.channel
     socket = context.socket(zmq.DEALER)
     socket.connect(f"tcp://{settings.host}:{settings.requests_port}")
     for rubbish in (
@@ -172,7 +172,7 @@ def test_an_engine_that_stops_meanwhile_answers_nothing_and_changes_nothing(path
 def test_a_file_edited_by_hand_is_read_again_on_request(desk: Desk, window: PlainWindow) -> None:
     adjustments.path_of(desk.path).write_text('{"recipes": {"1": {"quality": {"min_sharpness": 0.02}}}}')
     assert window.ask(ReloadSettings()).done
-    assert desk.released.settings.recipes[1].quality == {"min_sharpness": 0.02}
+    assert desk.active.settings.recipes[1].quality == {"min_sharpness": 0.02}
     assert settings_noted(desk) == [("Quentin", "read again", "")]
 
 
@@ -192,5 +192,5 @@ def test_a_login_ends_with_the_window_and_service_mode_with_the_login(
 ) -> None:
     assert window.ask(HoldService()).done
     assert window.ask(LogOut("window closed")).done
-    window.until(lambda: bool(desk.given) and desk.given[-1] == orders.Service("Quentin", over=True))
+    window.until(lambda: bool(desk.given) and desk.given[-1] == orders.Service("Quentin", ended=True))
     assert window.ask(ResetCounts()).refusal == "a login of the level setter is needed"

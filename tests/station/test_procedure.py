@@ -17,7 +17,7 @@ from station.domain import Frame, Image, Origin, Purpose, Verdict
 from station.engine.alarm_log import AlarmLog
 from station.engine.listener import Listener
 from station.engine.procedure import Procedure
-from station.engine.self_checks import Master, Watch
+from station.engine.self_checks import Master, SelfChecks
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
 from station.inspection.inspector import Inspector
 from station.inspection.loading import Loaded
@@ -91,15 +91,15 @@ class Rig:
         self.shown: list[int] = []
         self.checked_in = 0
         self.loaded = Loaded(1, inspector, provenance(), None)
-        self.watch = Watch(self.loaded, {"MASTER": Master(Verdict.NOK)}, None, 1e9)
+        self.self_checks = SelfChecks(self.loaded, {"MASTER": Master(Verdict.NOK)}, None, 1e9)
         guarded = ReconnectingCamera(camera, 1.0)
-        guarded.look_after()
+        guarded.keep_open()
         self.procedure = Procedure(
             camera=guarded,
             origin=Origin.SIMULATED,
             line=self.line,  # type: ignore[arg-type]
             archive=archive,
-            watch=self.watch,
+            self_checks=self.self_checks,
             listener=Listener(self.events.append, lambda preview: self.shown.append(preview.inspection_id)),
             alarm_log=alarm_log,
             check_in=self._check_in,
@@ -124,16 +124,16 @@ def rig(tmp_path: Path, frames: dict[str, Image], inspector: Inspector) -> Itera
 
 
 ASKED: dict[str, tuple[Callable[[Rig], None], Purpose, VerdictCode, str]] = {
-    "part": (lambda r: r.procedure.part(TRIGGER, r.loaded), Purpose.PART, VerdictCode.NOK, "CELL-7"),
+    "part": (lambda r: r.procedure.inspect_part(TRIGGER, r.loaded), Purpose.PART, VerdictCode.NOK, "CELL-7"),
     "master, by the PLC": (
-        lambda r: r.procedure.part(replace(TRIGGER, serial="MASTER", golden=True), r.loaded),
+        lambda r: r.procedure.inspect_part(replace(TRIGGER, serial="MASTER", golden=True), r.loaded),
         Purpose.GOLDEN,
         VerdictCode.TEST,
         "MASTER",
     ),
-    "test image": (lambda r: r.procedure.test_image("", r.loaded), Purpose.TEST, VerdictCode.NONE, ""),
+    "test image": (lambda r: r.procedure.inspect_now("", r.loaded), Purpose.TEST, VerdictCode.NONE, ""),
     "master, by a person": (
-        lambda r: r.procedure.test_image("MASTER", r.loaded),
+        lambda r: r.procedure.inspect_now("MASTER", r.loaded),
         Purpose.GOLDEN,
         VerdictCode.NONE,
         "MASTER",
@@ -157,13 +157,13 @@ def test_all_are_judged_recorded_and_shown_alike_but_only_a_trigger_is_answered(
     assert rig.shown == [record.inspection_id]
     assert [result.verdict for result in rig.line.published] == ([told] if by_plc else [])
     assert len(rig.line.exposed) == rig.checked_in == int(by_plc)
-    assert (rig.watch._masters["MASTER"].found is Verdict.NOK) == (purpose is Purpose.GOLDEN)
+    assert (rig.self_checks._masters["MASTER"].found is Verdict.NOK) == (purpose is Purpose.GOLDEN)
 
 
 def test_a_part_whose_trigger_is_over_is_recorded_without_a_grab(rig: Rig) -> None:
     rig.line.working = rig.line.in_time = False
     rig.line.told = replace(rig.line.told, error_code=ERROR_ABORTED)
-    rig.procedure.part(TRIGGER, rig.loaded)
+    rig.procedure.inspect_part(TRIGGER, rig.loaded)
     record = rig.event.record
     assert (record.verdict, record.inspection.reason) == (Verdict.ERROR, Reason.ABORTED)
     assert record.inspection.timing.grab_ms is None
@@ -179,10 +179,10 @@ def test_a_result_that_came_too_late_is_an_alarm_with_the_code_that_the_plc_read
     rig: Rig, said: int, code: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     passed: list[int] = []
-    monkeypatch.setattr(AlarmLog, "passing", lambda _self, code, _what: passed.append(code))
+    monkeypatch.setattr(AlarmLog, "add_event", lambda _self, code, _what: passed.append(code))
     rig.line.in_time = False
     rig.line.told = replace(rig.line.told, error_code=said)
-    rig.procedure.part(TRIGGER, rig.loaded)
+    rig.procedure.inspect_part(TRIGGER, rig.loaded)
     assert rig.event.told is VerdictCode.ERROR
     assert rig.event.record.verdict is Verdict.NOK
     assert passed == [code]
@@ -197,15 +197,15 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize(("fault", "reason", "there"), FAULTS)
-def test_a_grab_that_fails_is_a_reason(rig: Rig, fault: Exception, reason: Reason, there: bool) -> None:
+@pytest.mark.parametrize(("fault", "reason", "connected"), FAULTS)
+def test_a_grab_that_fails_is_a_reason(rig: Rig, fault: Exception, reason: Reason, connected: bool) -> None:
     rig.camera.fault = fault
-    rig.procedure.part(TRIGGER, rig.loaded)
+    rig.procedure.inspect_part(TRIGGER, rig.loaded)
     inspection = rig.event.record.inspection
     assert (inspection.verdict, inspection.reason) == (Verdict.ERROR, reason)
     assert inspection.timing.grab_ms is not None
     assert [result.reason for result in rig.line.published] == [reason.code]
-    assert rig.procedure._camera.there is there
+    assert rig.procedure._camera.connected is connected
 
 
 def test_a_grab_has_a_frame_or_a_reason_never_both_nor_neither() -> None:
@@ -218,14 +218,14 @@ def test_a_network_that_fails_ends_in_error_after_a_grab(rig: Rig, monkeypatch: 
         raise ZeroDivisionError
 
     monkeypatch.setattr(Inspector, "inspect", fails)
-    rig.procedure.test_image("", rig.loaded)
+    rig.procedure.inspect_now("", rig.loaded)
     inspection = rig.event.record.inspection
     assert (inspection.verdict, inspection.reason) == (Verdict.ERROR, Reason.INTERNAL)
     assert inspection.timing.grab_ms is not None
 
 
 def test_a_trigger_that_got_no_answer_is_shown_as_error_without_a_record(rig: Rig) -> None:
-    rig.procedure.unanswered(TRIGGER, rig.loaded)
+    rig.procedure.show_error(TRIGGER, rig.loaded)
     assert (rig.event.told, rig.event.record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)
     assert rig.event.record.inspection_id == 0
     assert not list(read_records(rig.folder))

@@ -16,9 +16,9 @@ from station.archive.room import Room
 from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Verdict
-from station.engine.health import Seen, alarms, health
+from station.engine.health import StationState, alarms, health
 from station.errors import LoginError
-from station.journal.review_writer import give
+from station.journal.review_writer import save_review
 from station.journal.reviews import Opinion, Review, State, possible, reviews
 from station.plc.map.alarms import Alarm
 from station.plc.map.registers import Offline
@@ -57,8 +57,8 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
     archive.close()
     before = {path: path.read_bytes() for path in folder.rglob("*.json")}
     for who in ("Ada", "Bob"):
-        give(folder, who, may_second=True, inspection_id=1, verdict="NOK", opinion=Opinion.RIGHT)
-        give(
+        save_review(folder, who, may_second=True, inspection_id=1, verdict="NOK", opinion=Opinion.RIGHT)
+        save_review(
             folder,
             who,
             may_second=True,
@@ -68,9 +68,11 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
             comment="soot",
         )
         marks = {7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD}
-        give(folder, who, may_second=True, inspection_id=3, verdict="OK", opinion=Opinion.MISSED, marks=marks)
+        save_review(
+            folder, who, may_second=True, inspection_id=3, verdict="OK", opinion=Opinion.MISSED, marks=marks
+        )
         marks = {7: Reason.HOLE if who == "Ada" else Reason.MISSING_WELD, 9: Reason.MISSING_WELD}
-        give(
+        save_review(
             folder,
             who,
             may_second=True,
@@ -80,16 +82,16 @@ def test_a_verdict_stays_whatever_people_say_and_what_they_agree_on_is_exported(
             comment="see the section",
             marks=marks,
         )
-    give(folder, "Ada", may_second=True, inspection_id=4, verdict="NOK", opinion=Opinion.FALSE_CALL)
-    with pytest.raises(ValueError, match="cannot be said of ERROR"):
-        give(folder, "Ada", may_second=True, inspection_id=6, verdict="ERROR", opinion=Opinion.RIGHT)
+    save_review(folder, "Ada", may_second=True, inspection_id=4, verdict="NOK", opinion=Opinion.FALSE_CALL)
+    with pytest.raises(ValueError, match="does not fit the verdict ERROR"):
+        save_review(folder, "Ada", may_second=True, inspection_id=6, verdict="ERROR", opinion=Opinion.RIGHT)
     marks = {7: Reason.HOLE}
-    with pytest.raises(ValueError, match="cannot be said of OK"):
-        give(
+    with pytest.raises(ValueError, match="does not fit the verdict OK"):
+        save_review(
             folder, "Ada", may_second=True, inspection_id=5, verdict="OK", opinion=Opinion.RIGHT, marks=marks
         )
     with pytest.raises(LoginError, match="level quality"):
-        give(folder, "Cy", may_second=False, inspection_id=4, verdict="NOK", opinion=Opinion.RIGHT)
+        save_review(folder, "Cy", may_second=False, inspection_id=4, verdict="NOK", opinion=Opinion.RIGHT)
     assert [reviews(folder)[n].state for n in (1, 2, 3, 4)] == [State.AGREED] * 3 + [State.ONE]
     assert {path: path.read_bytes() for path in folder.rglob("*.json")} == before
     problems = list(export(read_records(folder), folder, tmp_path / "out", "reviewed"))
@@ -183,9 +185,9 @@ def test_statistics_count_parts_by_shift_recipe_reason_and_segment() -> None:
 
 
 BOOLS = st.booleans()
-SEEN = st.builds(
-    Seen,
-    camera_there=BOOLS,
+STATES = st.builds(
+    StationState,
+    camera_connected=BOOLS,
     can_write=BOOLS,
     room=st.sampled_from(list(Room)),
     plc_silent=BOOLS,
@@ -195,24 +197,26 @@ SEEN = st.builds(
     drifting=BOOLS,
     settings_refused=BOOLS,
     service=st.sampled_from(["", "Ada"]),
-    attended=BOOLS,
+    order_waiting=BOOLS,
     bit=st.just(0),
     recipe=st.just(1),
     config_crc=st.just(7),
 )
 
 
-@given(SEEN)
+@given(STATES)
 def test_the_station_is_ready_only_if_nothing_keeps_it_and_everything_that_lasts_is_an_alarm(
-    seen: Seen,
+    state: StationState,
 ) -> None:
-    told, lasting = health(seen), alarms(seen)
-    assert told.ready == (told.offline is Offline.NONE)
-    assert told.ready == (
-        seen.camera_there and seen.can_write and not (seen.self_test_failed or seen.service or seen.attended)
+    published, active = health(state), alarms(state)
+    assert published.ready == (published.offline is Offline.NONE)
+    assert published.ready == (
+        state.camera_connected
+        and state.can_write
+        and not (state.self_test_failed or state.service or state.order_waiting)
     )
-    assert told.failure == any(
-        a in lasting for a in (Alarm.CAMERA_LOST, Alarm.ARCHIVE_FULL, Alarm.SELF_TEST_FAILED)
+    assert published.failure == any(
+        alarm in active for alarm in (Alarm.CAMERA_LOST, Alarm.ARCHIVE_FULL, Alarm.SELF_TEST_FAILED)
     )
-    assert told.function_check == (Alarm.MASTER_WRONG in lasting or Alarm.MASTERS_DUE in lasting)
-    assert told.alarm == (int(lasting[0]) if lasting else 0)
+    assert published.function_check == (Alarm.MASTER_WRONG in active or Alarm.MASTERS_DUE in active)
+    assert published.alarm == (int(active[0]) if active else 0)

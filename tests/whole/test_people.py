@@ -1,4 +1,4 @@
-"""What people do at a running station: service mode, setting-up pictures, masters, changed settings; the PLC is told."""
+"""People at a running station: service mode, setup images, masters, changed settings; the PLC can read it."""
 
 import asyncio
 import json
@@ -14,12 +14,12 @@ from deploy.demo.ports import free_ports
 from station.archive.reader import find
 from station.archive.writer import Archive
 from station.camera.pylon import PylonCamera
-from station.channel.events import Event, LookEvent, PartEvent, StatusEvent
+from station.channel.events import Event, PartEvent, SetupImageEvent, StatusEvent
 from station.domain import Frame, Image, Verdict
-from station.engine.active_settings import Released
+from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog
 from station.engine.listener import Listener
-from station.engine.orders import Order, OrderQueue, Reload, ResetCounts, Service, TestPicture
+from station.engine.orders import Order, OrderQueue, Reload, ResetCounts, Service, TestImage
 from station.engine.startup import make_camera, make_cycle
 from station.inspection.loading import prepare
 from station.journal.journal import Kind, entries
@@ -46,9 +46,14 @@ class Running:
         self._alarm_log, self._stop = AlarmLog(self.settings.archive.folder), threading.Event()
         listener = Listener(self.events.append, lambda _: None, self._orders.take)
         loaded = prepare(self.settings, 1)
-        released = Released(self.settings, lambda: load(path), make_camera)
         cycle = make_cycle(
-            self.settings, loaded, self._line, self._archive, listener, self._alarm_log, released
+            self.settings,
+            loaded,
+            line=self._line,
+            archive=self._archive,
+            listener=listener,
+            alarm_log=self._alarm_log,
+            active=ActiveSettings(self.settings, lambda: load(path), make_camera),
         )
         self._line.start()
         self._thread = threading.Thread(target=cycle.run, args=(self._stop,))
@@ -58,11 +63,11 @@ class Running:
         self._orders.put(order)
 
     def adjust(self, changes: dict[str, object]) -> None:
-        """As if by hand."""
+        """Change the settings file as if by hand."""
         adjustments.path_of(self.path).write_text(json.dumps(changes))
 
     def until(self, said: Callable[[StatusEvent], bool], again: Order | None = None) -> StatusEvent:
-        """The first status that says so."""
+        """Return the first status that meets a condition; repeat an order until then."""
         end, start = time.monotonic() + 20, len(self.events)
         while time.monotonic() < end:
             for event in self.events[start:]:
@@ -71,7 +76,7 @@ class Running:
             if again is not None:
                 self.ask(again)
             time.sleep(0.1)
-        raise AssertionError("never said")
+        raise AssertionError("the status never came")
 
     def part(self, serial: str, image: Image, golden: bool = False) -> Answer:
         """Pass one part."""
@@ -175,10 +180,10 @@ def test_setting_up_pictures_have_numbers_and_leave_no_record(
     running.feed.show(frames[label_with("OK")["frame"]])
     enable(running)
     running.until(
-        lambda _: any(isinstance(e, LookEvent) for e in running.events),
-        Service("Ada", look=True, exposure_us=900.0),
+        lambda _: any(isinstance(e, SetupImageEvent) for e in running.events),
+        Service("Ada", setup_images=True, exposure_us=900.0),
     )
-    seen = next(e for e in running.events if isinstance(e, LookEvent))
+    seen = next(e for e in running.events if isinstance(e, SetupImageEvent))
     assert seen.exposure_us == 900.0
     assert seen.ring is not None
     assert sum(seen.histogram) == 2688 * 128
@@ -186,8 +191,8 @@ def test_setting_up_pictures_have_numbers_and_leave_no_record(
     assert not find(running.settings.archive.folder)
     running.feed.withdraw()
     running.until(
-        lambda _: any(isinstance(e, LookEvent) and e.problem for e in running.events),
-        Service("Ada", look=True),
+        lambda _: any(isinstance(e, SetupImageEvent) and e.problem for e in running.events),
+        Service("Ada", setup_images=True),
     )
 
 
@@ -197,7 +202,7 @@ def test_a_master_that_is_due_is_told_and_judged_from_the_window(
     status = running.until(lambda e: e.camera_there)
     assert Alarm.MASTERS_DUE in status.alarms
     running.feed.show(frames[label_with("OK")["frame"]])
-    running.ask(TestPicture(master="MASTER-OK"))
+    running.ask(TestImage(master="MASTER-OK"))
     running.until(lambda e: Alarm.MASTERS_DUE not in e.alarms)
     assert [(row.purpose, row.serial, row.verdict) for row in find(running.settings.archive.folder)] == [
         ("golden", "MASTER-OK", "OK")
@@ -216,15 +221,15 @@ def test_changed_settings_are_used_at_once_and_refused_ones_are_an_alarm(
     running.adjust(
         {"recipes": {"1": {"model": {"hole_threshold": 0.0001}}}, "camera": {"exposure_us": 1500.0}}
     )
-    running.ask(Reload(time.time()))
+    running.ask(Reload())
     running.until(lambda e: e.camera_there and e.config_crc != before.config_crc)
     assert running.part("STRICT", good).verdict is VerdictCode.NOK
     running.adjust({"recipes": {"1": {"model": {"hole_threshold": 7}}}})
-    running.ask(Reload(time.time()))
+    running.ask(Reload())
     running.until(lambda e: Alarm.SETTINGS_REFUSED in e.alarms)
     assert running.part("STILL STRICT", good).verdict is VerdictCode.NOK
     running.adjust({})
-    running.ask(Reload(time.time()))
+    running.ask(Reload())
     running.until(lambda e: Alarm.SETTINGS_REFUSED not in e.alarms and e.config_crc == before.config_crc)
     assert running.part("AS BEFORE", good).verdict is VerdictCode.OK
 
@@ -243,8 +248,8 @@ def test_a_part_is_never_judged_with_an_exposure_that_was_tried_by_hand(
     monkeypatch.setattr(PylonCamera, "grab", noting)
     running.feed.show(good)
     enable(running)
-    wanted = Service("Ada", look=True, exposure_us=900.0)
-    running.until(lambda _: any(isinstance(e, LookEvent) for e in running.events), wanted)
+    wanted = Service("Ada", setup_images=True, exposure_us=900.0)
+    running.until(lambda _: any(isinstance(e, SetupImageEvent) for e in running.events), wanted)
     assert used[-1] == 900.0
     looks = len(used)
     assert running.part("AFTER", good).verdict is VerdictCode.OK, "as soon as the lease is over"
@@ -280,7 +285,7 @@ def test_a_result_that_nobody_has_read_is_not_wiped_by_changed_settings(
         assert await until(Status.TRIGGER_ACK)
         await client.write(0, [int(Control.ENABLE)])
         assert await until(Status.RESULT_VALID)
-        running.ask(Reload(time.time()))
+        running.ask(Reload())
         seen = []
         for _ in range(50):
             seen.append(await status())
@@ -313,7 +318,7 @@ def test_a_camera_that_cannot_be_used_so_is_refused_and_the_one_before_goes_on(
     good = frames[label_with("OK")["frame"]]
     enable(running)
     running.adjust(change)
-    running.ask(Reload(time.time()))
+    running.ask(Reload())
     running.until(lambda e: Alarm.SETTINGS_REFUSED in e.alarms)
     answer = running.part("AS BEFORE", good)
     assert answer.verdict is VerdictCode.OK
@@ -322,11 +327,9 @@ def test_a_camera_that_cannot_be_used_so_is_refused_and_the_one_before_goes_on(
 
 def test_a_recipe_that_is_not_in_use_must_be_fit_too(running: Running) -> None:
     enable(running)
-    asked = time.time()
     running.adjust({"recipes": {"2": {"model": {"path": "nowhere.onnx"}}}})
-    running.ask(Reload(asked))
-    status = running.until(lambda e: e.reloaded_s == asked)
-    assert Alarm.SETTINGS_REFUSED in status.alarms
+    running.ask(Reload())
+    status = running.until(lambda e: Alarm.SETTINGS_REFUSED in e.alarms)
     assert status.recipe == 1
 
 
@@ -334,14 +337,14 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
     running: Running, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def heard(serial: str) -> PartEvent:
-        """It comes after the answer to the PLC."""
+        """Return the event of a part; it comes after the result for the PLC."""
         end = time.monotonic() + 10
         while time.monotonic() < end:
             for event in running.events:
                 if isinstance(event, PartEvent) and event.record.serial == serial:
                     return event
             time.sleep(0.02)
-        raise AssertionError("never heard")
+        raise AssertionError("the event never came")
 
     good, bad = frames[label_with("OK")["frame"]], frames[label_with("hole")["frame"]]
     assert running.part("GOOD", good).verdict is VerdictCode.OK
@@ -357,6 +360,6 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
     def broken(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("station.engine.procedure.answer", broken)
+    monkeypatch.setattr("station.engine.procedure.plc_result", broken)
     assert not running.part("FAULT", good).accepted
     assert (heard("FAULT").told, heard("FAULT").record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)

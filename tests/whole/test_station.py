@@ -1,4 +1,4 @@
-"""Camera to verdict to PLC, every part the production one: emulated camera, engine, Modbus, simulated line."""
+"""Camera to verdict to PLC with the production parts: emulated camera, engine, Modbus, simulated line."""
 
 import asyncio
 import hashlib
@@ -24,8 +24,8 @@ from station.defects import Reason
 from station.domain import Frame, Image, Purpose, Verdict
 from station.engine.alarm_log import AlarmLog
 from station.engine.listener import Listener
-from station.engine.orders import Order, TestPicture
-from station.engine.self_checks import Watch
+from station.engine.orders import Order, TestImage
+from station.engine.self_checks import SelfChecks
 from station.engine.startup import make_cycle
 from station.errors import ModelError, RecordError
 from station.inspection.loading import prepare
@@ -137,9 +137,8 @@ def station(settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         return taken
 
     alarm_log = AlarmLog(settings.archive.folder)
-    cycle = make_cycle(
-        settings, loaded, line, archive, Listener(events.append, lambda _: None, orders), alarm_log
-    )
+    listener = Listener(events.append, lambda _: None, orders)
+    cycle = make_cycle(settings, loaded, line=line, archive=archive, listener=listener, alarm_log=alarm_log)
     stop = threading.Event()
     thread = threading.Thread(target=cycle.run, args=(stop,), name="cycle")
     thread.start()
@@ -223,7 +222,7 @@ def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(
     station: Station, frames: dict[str, Image]
 ) -> None:
     (before,) = station.run([frames[label_with("OK")["frame"]]])
-    station.asked.append(TestPicture())
+    station.asked.append(TestImage())
     event = station.part_events(2)[-1]
     assert (event.record.purpose, event.record.verdict, event.told) == (
         Purpose.TEST,
@@ -299,13 +298,13 @@ def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
         update={"self_test_path": tmp_path / "stored.png", "self_test_verdict": "NOK", "self_test_s": 0.5}
     )
     loaded = prepare(settings.model_copy(update={"model": model}), 1)
-    watch = Watch(loaded, {}, None, 0.0)
-    watch.idle()
-    assert not watch.self_test_failed
+    self_checks = SelfChecks(loaded, {}, None, 0.0)
+    self_checks.run_when_idle()
+    assert not self_checks.self_test_failed
     assert loaded.self_test is not None
     loaded.self_test._image[900:1100, :] = 0
-    watch.idle()
-    assert watch.self_test_failed
+    self_checks.run_when_idle()
+    assert self_checks.self_test_failed
     assert "self-test failed" in caplog.text
     cv2.imwrite(str(tmp_path / "stored.png"), np.zeros((2160, 4200), np.uint8))
     with pytest.raises(ModelError, match="must be NOK"):

@@ -10,7 +10,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QImage
 
-from station.channel.events import SETTING_UP, STATUS_LOST_S, PartEvent, Preview, StatusEvent
+from station.channel.events import SETUP_IMAGE, STATUS_LOST_S, PartEvent, Preview, StatusEvent
 from station.domain import Purpose, Verdict
 from station.errors import WeldgateError
 from station.panel.session.bridge import Bridge
@@ -38,7 +38,7 @@ class Received(QObject):
     part_came = Signal()
     preview_came = Signal()
     setup_image_came = Signal(object)
-    """Carries a LookEvent: the numbers of a setup image."""
+    """Carries a SetupImageEvent: the numbers of a setup image."""
     settings_changed = Signal()
     """Emitted when the settings file or its adjustments were changed."""
 
@@ -131,7 +131,7 @@ class Received(QObject):
         self.part_came.emit()
 
     def _on_preview(self, preview: Preview) -> None:
-        if preview.inspection_id == SETTING_UP:
+        if preview.inspection_id == SETUP_IMAGE:
             self._setup_preview = preview
             self.preview_came.emit()
             return

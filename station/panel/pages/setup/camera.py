@@ -2,7 +2,7 @@
 
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
-from station.channel.events import LookEvent
+from station.channel.events import SetupImageEvent
 from station.channel.requests import MIN_REASON, Changed, HoldService
 from station.domain import Ring
 from station.journal.users import Level
@@ -142,7 +142,7 @@ class CameraPage(Page):
         self._refresh_buttons()
         self.problem.setText(data(why))
 
-    def _on_setup_image(self, event: LookEvent) -> None:
+    def _on_setup_image(self, event: SetupImageEvent) -> None:
         self._ring = event.ring
         self._best = max(self._best, event.sharpness)
         status = self._session.received.status
