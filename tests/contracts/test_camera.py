@@ -29,7 +29,7 @@ def picture(level: int) -> Image:
 
 
 class Fed(PylonCamera):
-    """The production camera with a feed that shows the next picture before each grab."""
+    """The production camera with a feed that shows the next image before each grab."""
 
     def __init__(self, feed: Feed, images: list[Image]) -> None:
         super().__init__(

@@ -11,7 +11,7 @@ from station.settings.model import PlcSettings
 
 @pytest.fixture
 def line() -> Iterator[ModbusLine]:
-    """A station that is a server and well; the right to write is soon free for the next peer."""
+    """A healthy station that is a server; the right to write is soon free for the next peer."""
     kept = make_line(PlcSettings(port=free_ports(1)[0], plc_heartbeat_ms=0, writer_idle_ms=100))
     kept.start()
     kept.check_in(Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7))

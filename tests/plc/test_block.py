@@ -42,7 +42,7 @@ def window(**changes: Value) -> list[int]:
 
 
 class Plc:
-    """A block, its clock and a station that answers as it is told."""
+    """A block, its clock and a station that answers as set."""
 
     def __init__(self, accept_simulated: bool = False) -> None:
         self.block, self.now_s, self.beat = Block(), 0.0, 0

@@ -26,10 +26,10 @@ def ok(trigger: Trigger) -> Result:
 
 
 class Proxy:
-    """Between station and PLC: forwards, and at the n-th write does what it was told, once."""
+    """Between station and PLC: forwards, and at the n-th write misbehaves once, as set."""
 
     def __init__(self, plc_port: int, at_write: int, forward: bool) -> None:
-        """`forward`: the PLC gets that write, the station no answer; else nobody gets anything."""
+        """`forward`: the PLC gets that write but the station no answer; otherwise neither gets anything."""
         self._plc_port, self._at, self._forward = plc_port, at_write, forward
         self._writes = 0
         self._listener = socket.create_server(("127.0.0.1", 0))

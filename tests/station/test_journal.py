@@ -89,7 +89,7 @@ def test_many_writers_keep_one_chain(pool: Executor, tmp_path: Path) -> None:
 
 @contextmanager
 def _released_later(release: Callable[[], None]) -> Iterator[None]:
-    """What another process does a moment later."""
+    """Do what another process does a moment later."""
     timer = threading.Timer(0.2, release)
     timer.start()
     try:

@@ -124,7 +124,7 @@ class Desk:
 
 @pytest.fixture(scope="module")
 def people(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """A journal with one user of each level; PINs are slow to hash."""
+    """Return a journal with one user of each level; PINs are slow to hash."""
     folder = tmp_path_factory.mktemp("people")
     for level in sorted(Level, reverse=True):
         save_user(folder, PEOPLE[level], level=level, pin=PIN, by="Ada")

@@ -76,7 +76,7 @@ def values(state: State, health: Health, now_s: float, counts: Counts) -> dict[s
         "SW_VERSION": SW_VERSION,
     }
     if shown is not None:
-        worst = max(range(len(shown.seg_scores)), key=lambda i: shown.seg_scores[i], default=0)
+        worst = max(range(len(shown.seg_scores)), key=lambda segment: shown.seg_scores[segment], default=0)
         window |= {
             "RESULT_TRIGGER_ID": shown.trigger.trigger_id,
             "INSPECTION_ID": shown.inspection_id & 0xFFFFFFFF,

@@ -80,8 +80,8 @@ class SimulatedLine:
         """`accept_simulated`: let parts pass on verdicts of an emulated camera; `recipe`: expected recipe."""
         self._windows = windows
         self._block = Block()
-        self._v = self._block.v
-        self._v.AcceptSimulated, self._v.Recipe = accept_simulated, recipe
+        self._plc = self._block.v  # variables of the block
+        self._plc.AcceptSimulated, self._plc.Recipe = accept_simulated, recipe
         self._rng = random.Random(seed)
         self._connected = False
         self._crc_known = False
@@ -122,22 +122,22 @@ class SimulatedLine:
     async def wait_ready(self, timeout_s: float) -> bool:
         """Hold ENABLE and the heartbeat until READY is 1; return False if it was not in time."""
         return await self._until(
-            lambda: bool(self._v.Window[0] & Status.READY) and number(self.status(), "MAP_VERSION") > 0,
+            lambda: bool(self._plc.Window[0] & Status.READY) and number(self.status(), "MAP_VERSION") > 0,
             timeout_s,
         )
 
     async def command(self, code: CommandCode | int, arg: int = 0, timeout_s: float = 30.0) -> int | None:
         """Have a command carried out and return CMD_ECHO; None if none came."""
-        self._v.CommandCode, self._v.Argument, self._v.Extra = int(code), arg, int(Control.EXEC_COMMAND)
-        done = await self._until(lambda: bool(self._v.Window[0] & Status.CMD_DONE), timeout_s)
+        self._plc.CommandCode, self._plc.Argument, self._plc.Extra = int(code), arg, int(Control.EXEC_COMMAND)
+        done = await self._until(lambda: bool(self._plc.Window[0] & Status.CMD_DONE), timeout_s)
         echo = number(self.status(), "CMD_ECHO") if done else None
-        self._v.Extra = 0
-        await self._until(lambda: not self._v.Window[0] & Status.CMD_DONE, 2.0)
+        self._plc.Extra = 0
+        await self._until(lambda: not self._plc.Window[0] & Status.CMD_DONE, 2.0)
         return echo
 
     def status(self) -> dict[str, Value]:
         """Return the status window as last read."""
-        return unpack_window(STATUS_START, self._v.Window)
+        return unpack_window(STATUS_START, self._plc.Window)
 
     async def inspect(
         self, serial: str, window_s: float = 4.0, golden: bool = False, faults: frozenset[Fault] = frozenset()
@@ -146,27 +146,30 @@ class SimulatedLine:
 
         `window_s`: time within which the result must come; `golden`: the part is a master.
         """
-        v = self._v
-        v.Serial, v.Golden, v.WindowTime = pack(BY_NAME["PART_SERIAL"], serial), golden, window_s
+        plc = self._plc
+        plc.Serial, plc.Golden, plc.WindowTime = pack(BY_NAME["PART_SERIAL"], serial), golden, window_s
         if not self._crc_known and await self.wait_ready(window_s):
-            v.Crc, self._crc_known = number(self.status(), "CONFIG_CRC"), True
+            plc.Crc, self._crc_known = number(self.status(), "CONFIG_CRC"), True
         self._faults = faults
-        v.Start, seen, triggered_s, valid_s, quiet = True, None, None, None, Fault.SILENCE not in faults
+        plc.Start, quiet = True, Fault.SILENCE not in faults
+        seen: dict[str, Value] | None = None
+        triggered_s: float | None = None
+        valid_s: float | None = None
         silent_in = self._rng.choice((10, 30, 40, 50))
         until = time.monotonic() + 2 * window_s
         while time.monotonic() < until:
             await self._cycle()
-            v.Start = False
-            if v.State == 30 and triggered_s is None:
+            plc.Start = False
+            if plc.State == 30 and triggered_s is None:
                 triggered_s = time.monotonic()
-            if v.State == 50 and valid_s is None:
+            if plc.State == 50 and valid_s is None:
                 valid_s, seen = time.monotonic(), self.status()
                 if Fault.STORM in faults:
                     await self._storm()
-            if not quiet and v.State == silent_in:
+            if not quiet and plc.State == silent_in:
                 quiet = True
                 await asyncio.sleep(self._rng.uniform(*SILENCE_S))
-            if v.PartDone and v.State == 0:
+            if plc.PartDone and plc.State == 0:
                 break
             await asyncio.sleep(POLL_S)
         self._faults = frozenset()
@@ -175,28 +178,28 @@ class SimulatedLine:
         )
 
     def _answer(self, seen: dict[str, Value] | None, took_ms: float | None) -> Answer:
-        v = self._v
-        refused = REFUSALS[v.Refusal] or None
+        plc = self._plc
+        refused = REFUSALS[plc.Refusal] or None
         values = seen or {"VERDICT": 0, "INSPECTION_ID": 0, "REASON": 0, "FLAGS": 0}
         code = number(values, "VERDICT")
-        answered = seen is not None and v.Refusal not in (NOT_READY, NO_RESULT)
+        answered = seen is not None and plc.Refusal not in (NOT_READY, NO_RESULT)
         return Answer(
-            accepted=v.PartOk,
+            accepted=plc.PartOk,
             verdict=VerdictCode(code) if code in list(VerdictCode) else VerdictCode.NONE,
             refused_by=refused,
             trigger_to_valid_ms=took_ms,
             inspection_id=number(values, "INSPECTION_ID"),
             reason=number(values, "REASON"),
-            handshake_complete=answered and not v.Window[0] & Status.RESULT_VALID,
+            handshake_complete=answered and not plc.Window[0] & Status.RESULT_VALID,
             flags=named_bits(Flags, number(values, "FLAGS")),
-            trigger_id=v.TriggerId,
+            trigger_id=plc.TriggerId,
         )
 
     async def _until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         until = time.monotonic() + timeout_s
         while time.monotonic() < until:
             await self._cycle()
-            if self._v.Fresh and condition():
+            if self._plc.Fresh and condition():
                 return True
             await asyncio.sleep(POLL_S)
         return False
@@ -209,16 +212,16 @@ class SimulatedLine:
 
     async def _cycle(self) -> None:
         """Run one cycle of the PLC: read, run the block, write what changed."""
-        v = self._v
+        plc = self._plc
         try:
             if not self._connected:
                 await self._windows.connect()
                 self._connected, self._written = True, None
-            v.Window, v.Fresh = await self._read(), True
+            plc.Window, plc.Fresh = await self._read(), True
         except LineError:
-            v.Fresh, self._connected = False, False
+            plc.Fresh, self._connected = False, False
         self._block.cycle(time.monotonic())
-        words = list(v.Command)
+        words = list(plc.Command)
         try:
             if self._connected and words != self._written:
                 await self._write(words)

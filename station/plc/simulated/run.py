@@ -44,9 +44,9 @@ async def run_line(run: LineRun) -> int:
     try:
         for number in range(1, run.parts + 1):
             faults = frozenset(Fault(name) for name in run.faults if rng.random() < FAULT_FRACTION)
-            answer = await line.inspect(f"LINE-{number:06d}", faults=faults)
-            passed += answer.accepted
-            print(_row(number, answer, faults))
+            outcome = await line.inspect(f"LINE-{number:06d}", faults=faults)
+            passed += outcome.accepted
+            print(_row(number, outcome, faults))
             await line.meanwhile(asyncio.sleep(run.pace_s))
     finally:
         await line.close()
@@ -54,9 +54,9 @@ async def run_line(run: LineRun) -> int:
     return passed
 
 
-def _row(number: int, answer: Answer, faults: frozenset[Fault]) -> str:
-    took = "-" if answer.trigger_to_valid_ms is None else f"{answer.trigger_to_valid_ms:.0f} ms"
+def _row(number: int, outcome: Answer, faults: frozenset[Fault]) -> str:
+    took = "-" if outcome.trigger_to_valid_ms is None else f"{outcome.trigger_to_valid_ms:.0f} ms"
     injected = f"  [{', '.join(sorted(faults))}]" if faults else ""
-    outcome = "pass" if answer.accepted else "reject"
-    row = f"{number:4d}  {answer.verdict.name:5}  {outcome}  {took:>8}  {answer.refused_by or ''}{injected}"
-    return row.rstrip()
+    decision = "pass" if outcome.accepted else "reject"
+    why = f"{outcome.refused_by or ''}{injected}"
+    return f"{number:4d}  {outcome.verdict.name:5}  {decision}  {took:>8}  {why}".rstrip()
