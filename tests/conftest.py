@@ -1,4 +1,4 @@
-"""Guards: emulated camera, offscreen window and single threads before anything is imported; nothing left running."""
+"""Guards: emulated camera, offscreen window, single threads before any import; nothing left running."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Pages of the API, one for each folder of the code, from names, signatures and docstrings. Nothing is imported."""
+"""Pages of the API, one for each folder of the code, from signatures and docstrings. Nothing is imported."""
 
 import ast
 import inspect
@@ -68,7 +68,7 @@ def page(root: Path, folder: Path) -> str:
 
 
 class _Qualified(ast.NodeTransformer):
-    """Writes the names in annotations in full, so that each leads to the right one of several of that name."""
+    """Writes the names in annotations in full, so that each leads to the right one of its name."""
 
     def __init__(self, tree: ast.Module, module: str) -> None:
         self._full: dict[str, str] = {}

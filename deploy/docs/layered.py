@@ -66,11 +66,13 @@ def draw(
     drawn = [_box(box, centre, [to for of, to in [*main, *implied] if of == box.name]) for box in boxes]
     return "\n".join(
         [
-            f'<svg class="rooms" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" role="img"'
-            f' style="min-width:{min(width, SMALLEST_W):.0f}px;max-width:{width:.0f}px" aria-label="{escape(title)}">',
+            f'<svg class="rooms" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}"'
+            f' role="img" style="min-width:{min(width, SMALLEST_W):.0f}px;max-width:{width:.0f}px"'
+            f' aria-label="{escape(title)}">',
             f"<title>{escape(title)}</title>",
             STYLE,
-            '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto">'
+            '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4"'
+            ' markerWidth="7" markerHeight="7" orient="auto">'
             '<path d="M0 0L8 4L0 8z" class="tip"/></marker></defs>',
             *lines,
             *drawn,
@@ -102,7 +104,7 @@ def _width(name: str) -> int:
 def _rows(
     levels: Mapping[str, int], arrows: Sequence[tuple[str, str]]
 ) -> tuple[dict[int, list[str]], list[list[str]]]:
-    """Return the nodes of each level with the bends of long arrows, and each arrow as the chain of its points."""
+    """Return the nodes of each level with the bends of long arrows, and each arrow's chain of points."""
     rows: dict[int, list[str]] = {level: [] for level in range(max(levels.values()) + 1)}
     for name in sorted(levels):
         rows[levels[name]].append(name)
@@ -135,7 +137,7 @@ def _crossings(rows: Mapping[int, Sequence[str]], down: Mapping[str, Sequence[st
 
 
 def _ordered(rows: dict[int, list[str]], chains: Sequence[Sequence[str]]) -> dict[int, list[str]]:
-    """Return each level in an order that lets few arrows cross: sorted by the mean place of the neighbours."""
+    """Return each level in an order that lets few arrows cross: by the mean place of the neighbours."""
     up, down = _neighbours(chains)
     best, fewest = rows, _crossings(rows, down)
     for sweep in range(SWEEPS):
@@ -173,7 +175,7 @@ def _placed(rows: Mapping[int, Sequence[str]], chains: Sequence[Sequence[str]]) 
 
 
 def _apart(names: Sequence[str], wished: Mapping[str, float]) -> dict[str, float]:
-    """Return the places nearest to the wished ones, by least squares, that keep the order and the distances."""
+    """Return the places nearest to the wished ones (least squares) that keep order and distances."""
     offsets, at = [], 0.0
     for index, name in enumerate(names):
         if index:

@@ -34,7 +34,7 @@ class _Loaded(HTMLParser):
 
 
 def loaded_from_network(site: Path) -> Iterator[str]:
-    """Yield one line for each address that a page, style sheet or script of a site would load from elsewhere."""
+    """Yield one line for each address that a page, style sheet or script would load from elsewhere."""
     for path in sorted(site.rglob("*")):
         if path.suffix not in (".html", ".css", ".js", ".svg"):
             continue

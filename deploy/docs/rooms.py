@@ -1,7 +1,7 @@
-"""Rooms of the code and the imports between them: found with grimp, compared with the layer contracts, described.
+"""Rooms of the code and the imports between them: found with grimp, compared with the layer contracts.
 
-A room is a folder below one of the packages, or a loose file. The loose files of a package that import no room
-of it are its ground and count as one room.
+A room is a folder below one of the packages, or a loose file. The loose files of a package that import no
+room of it are its ground and count as one room.
 """
 
 import ast
@@ -128,7 +128,7 @@ def contracts(pyproject: Path) -> list[Layers]:
 
 
 def broken(rooms: Rooms, layers: Iterable[Layers]) -> list[str]:
-    """Return one line for each circle of rooms and each arrow that leads up or to a sibling, naming the files."""
+    """Return one line for each circle of rooms and each arrow up or to a sibling, naming the files."""
     return [*_circles(rooms), *_upward(rooms, list(layers))]
 
 
@@ -167,7 +167,8 @@ def _upward(rooms: Rooms, layers: list[Layers]) -> list[str]:
                 high, low = contract.floor(one.importer), contract.floor(one.imported)
                 if high and low and high != low and low[0] <= high[0]:
                     lines.append(
-                        f"arrow up: {file_of(one.importer)} imports {file_of(one.imported)}, which is not below it"
+                        f"arrow up: {file_of(one.importer)} imports {file_of(one.imported)},"
+                        " which is not below it"
                     )
     return sorted(set(lines))
 

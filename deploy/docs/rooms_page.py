@@ -8,11 +8,13 @@ from deploy.docs.rooms import PACKAGES, Rooms
 
 INTRODUCTION = """# Rooms
 
-The code is divided into rooms: folders whose name says what is inside. `make docs` draws this page from the imports
-of the code, so it is never out of date. Arrows lead from the room that imports to the room that is imported. All of
-them lead down: there is no circle, and no arrow leads back up. `make lint` and `make docs` fail if one does.
+The code is divided into rooms: folders whose name says what is inside. `make docs` draws this page from the
+imports of the code, so it is never out of date. Arrows lead from the room that imports to the room that is
+imported. All of them lead down: there is no circle, and no arrow leads back up. `make lint` and `make docs`
+fail if one does.
 
-An arrow that a longer way implies is left out. Rest the pointer on a room, or touch it, to see all of its imports.
+An arrow that a longer way implies is left out. Rest the pointer on a room, or touch it, to see all of its
+imports.
 
 Green: loose files that need no other room. Violet: another package.
 """
@@ -25,7 +27,7 @@ HEADINGS = {
 
 
 def write_rooms(root: Path, path: Path) -> tuple[list[str], list[str]]:
-    """Write the page. Return the number of rooms in each drawing, and one line for each rule that is broken."""
+    """Write the page. Return the number of rooms in each drawing and one line for each broken rule."""
     modules, imports = found.imports_of(root)
     layers = found.contracts(root / "pyproject.toml")
     counts: list[str] = []

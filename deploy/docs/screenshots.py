@@ -125,7 +125,7 @@ class _Line(Thread):
 
 
 def _order() -> list[tuple[str, DemoPart, bool]]:
-    """Return the parts in order with serial, and whether each is a master: masters first, then mostly OK parts."""
+    """Return the parts in order, each with serial and whether it is a master: masters first, mostly OK."""
     shipped = shipped_parts()
     ok = next(part for part in shipped if part.truth == "OK")
     nok = [part for part in shipped if part.truth != "OK"]

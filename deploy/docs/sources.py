@@ -1,8 +1,8 @@
-"""Pages of the site: from which files they come, in which order they are read, and how their links are turned.
+"""Pages of the site: from which files they come, in which order they are read, how their links are turned.
 
-In the repository a page links to other files as any Markdown does. In the site a link to a page leads to the page,
-a link to a Python file to its entry in the API, a link to any other file to a copy of it; drawings become part of
-the page, so that they follow its colours.
+In the repository a page links to other files as any Markdown does. In the site a link to a page leads to the
+page, a link to a Python file to its entry in the API, a link to any other file to a copy of it; drawings
+become part of the page, so that they follow its colours.
 """
 
 import os

@@ -32,7 +32,7 @@ SPOKEN: Mapping[str, tuple[str, ...]] = {
     "station.panel.session.pending": ("NO_CONNECTION",),
     "station.panel.widgets.weld.recorded": ("ImageError",),
     "station.channel.requests": ("TOO_OLD", "FAULT"),
-    "station.engine.logins": ("_why_over",),
+    "station.engine.logins": ("_why_ended",),
     "station.engine.operator_desk": (
         "_note",
         "_log_out",
@@ -42,7 +42,7 @@ SPOKEN: Mapping[str, tuple[str, ...]] = {
         "RecordError",
     ),
     "station.engine.operator_requests": ("WeldgateError",),
-    "station.engine.settings_change": ("append", "SettingsError", "NOT_IN_FILE", "OTHERWISE"),
+    "station.engine.settings_change": ("append", "SettingsError", "NOT_IN_FILE", "DIFFERENT_IN_FILE"),
     "station.engine.settings_use": ("SettingsError", "RELOAD_REFUSED"),
     "station.journal.accounts": ("LoginError",),
     "station.journal.review_writer": ("LoginError",),

@@ -16,7 +16,7 @@ from deploy.docs.window_words import ONE_FOR_EACH_LEVEL, spoken, window_words
 from station.channel.requests import FAULT, TOO_OLD
 from station.defects import Reason
 from station.domain import Origin, Purpose, Verdict
-from station.engine.operator_desk import OTHER_SERVES
+from station.engine.operator_desk import OTHER_IN_SERVICE
 from station.engine.operator_requests import TOO_MANY
 from station.engine.rights import needed
 from station.engine.settings_change import NO_MOMENT
@@ -100,7 +100,7 @@ def test_the_words_of_the_station_are_collected_where_they_are_said() -> None:
     expected += [
         TOO_OLD,
         FAULT,
-        OTHER_SERVES,
+        OTHER_IN_SERVICE,
         TOO_MANY,
         NO_MOMENT,
         CAMERA_REFUSES,

@@ -1,4 +1,4 @@
-"""Kinds of defect as data: codes that never move, nothing inherited from another kind, and old files that are still read."""
+"""Kinds of defect as data: codes that never move, nothing inherited between kinds, old files still read."""
 
 import inspect
 import json

@@ -199,7 +199,8 @@ def test_a_candidate_is_compared_with_the_line(
     networks = f'path = "{MODEL}"\nring_path = "{SHIPPED / "ring.onnx"}"\n'
     path = tmp_path / "station.toml"
     path.write_text(
-        f'[camera]\nkind = "replay"\nfolder = "."\n[model]\n{networks}[recipes.2]\nmodel = {{ hole_threshold = 0.0001 }}\n'
+        f'[camera]\nkind = "replay"\nfolder = "."\n[model]\n{networks}'
+        "[recipes.2]\nmodel = { hole_threshold = 0.0001 }\n"
     )
     ok = sum(item["verdict"] == "OK" for item in labels())
     assert main(["replay", str(archive), "-c", str(path), "--recipe", "2", "--processes", "1"]) == 0

@@ -20,7 +20,8 @@ def test_every_path_counts_from_the_folder_of_the_file(tmp_path: Path) -> None:
     path = tmp_path / "station.toml"
     path.write_text(
         '[camera]\nkind = "replay"\nfolder = "images"\n[archive]\nfolder = "kept"\n[model]\npath = "a.onnx"\n'
-        '[plc.tls]\ncertificate_path = "a.pem"\nkey_path = "a.key"\nca_path = "ca.pem"\n[recipes.2]\nmodel = { path = "b.onnx" }\n'
+        '[plc.tls]\ncertificate_path = "a.pem"\nkey_path = "a.key"\nca_path = "ca.pem"\n'
+        '[recipes.2]\nmodel = { path = "b.onnx" }\n'
     )
     settings = load(path)
     assert isinstance(settings.camera, ReplaySettings)

@@ -1,4 +1,4 @@
-"""Text in the three reports: whatever a serial, file name or title holds is shown and never becomes markup."""
+"""Text in the three reports: what a serial, file name or title holds is shown and never becomes markup."""
 
 import json
 import re

@@ -158,10 +158,6 @@
         <translation>21 von 21 Segmenten</translation>
     </message>
     <message>
-        <source>test picture</source>
-        <translation>Testbild</translation>
-    </message>
-    <message>
         <source>master</source>
         <translation>Meisterteil</translation>
     </message>
@@ -258,18 +254,6 @@
         <translation>die SPS hat die Station offline gesetzt</translation>
     </message>
     <message>
-        <source>no records can be written</source>
-        <translation>keine Datensätze schreibbar</translation>
-    </message>
-    <message>
-        <source>the stored frame is judged differently</source>
-        <translation>das gespeicherte Bild wird anders beurteilt</translation>
-    </message>
-    <message>
-        <source>judge the part again; if it comes back, check that a part lies in the nest, and the camera&apos;s view</source>
-        <translation>Teil neu prüfen; tritt es erneut auf: prüfen, ob ein Teil im Nest liegt, und die Sicht der Kamera</translation>
-    </message>
-    <message>
         <source>judge the part again; if it comes back, check the part&apos;s seat and the camera&apos;s position</source>
         <translation>Teil neu prüfen; tritt es erneut auf: Sitz des Teils und Lage der Kamera prüfen</translation>
     </message>
@@ -322,10 +306,6 @@
         <translation>die SPS hat das Teil abgebrochen</translation>
     </message>
     <message>
-        <source>see the line&apos;s program</source>
-        <translation>siehe Programm der Linie</translation>
-    </message>
-    <message>
         <source>TRIGGER_ID was 0 or repeated</source>
         <translation>TRIGGER_ID war 0 oder wiederholt</translation>
     </message>
@@ -342,60 +322,16 @@
         <translation>SPS-Programm berichtigen: siehe Seite Linie</translation>
     </message>
     <message>
-        <source>the link was lost while the result was written</source>
-        <translation>Verbindung riss beim Schreiben des Ergebnisses</translation>
-    </message>
-    <message>
         <source>check the network to the PLC</source>
         <translation>Netz zur SPS prüfen</translation>
-    </message>
-    <message>
-        <source>check power and cable of the camera; the station connects again by itself</source>
-        <translation>Strom und Kabel der Kamera prüfen; die Station verbindet sich selbst wieder</translation>
-    </message>
-    <message>
-        <source>make room on the archive&apos;s disk, check that it is writable</source>
-        <translation>Platz auf der Platte des Archivs schaffen, Schreibrecht prüfen</translation>
-    </message>
-    <message>
-        <source>the archive&apos;s disk fills</source>
-        <translation>die Platte des Archivs füllt sich</translation>
-    </message>
-    <message>
-        <source>make room, or keep less (archive.keep)</source>
-        <translation>Platz schaffen oder weniger aufheben (archive.keep)</translation>
-    </message>
-    <message>
-        <source>the PLC&apos;s heartbeat stands still</source>
-        <translation>der Herzschlag der SPS steht</translation>
     </message>
     <message>
         <source>check the PLC program and the network to the PLC</source>
         <translation>SPS-Programm und Netz zur SPS prüfen</translation>
     </message>
     <message>
-        <source>restart the station; check the PC&apos;s memory</source>
-        <translation>Station neu starten; Speicher des PCs prüfen</translation>
-    </message>
-    <message>
         <source>a master was judged wrongly</source>
         <translation>ein Meisterteil wurde falsch beurteilt</translation>
-    </message>
-    <message>
-        <source>check master, light and focus; judge the master again</source>
-        <translation>Meisterteil, Licht und Fokus prüfen; Meisterteil neu prüfen</translation>
-    </message>
-    <message>
-        <source>the check of the masters is due</source>
-        <translation>die Prüfung der Meisterteile ist fällig</translation>
-    </message>
-    <message>
-        <source>put the masters in and judge them</source>
-        <translation>Meisterteile einlegen und prüfen</translation>
-    </message>
-    <message>
-        <source>the pictures drift</source>
-        <translation>die Bilder driften</translation>
     </message>
     <message>
         <source>check light, focus, glass and the surface of the parts</source>
@@ -404,10 +340,6 @@
     <message>
         <source>changed settings could not be used</source>
         <translation>geänderte Einstellungen unbrauchbar</translation>
-    </message>
-    <message>
-        <source>see the engine&apos;s log; the settings before are in use</source>
-        <translation>siehe Logdatei der Station; die bisherigen Einstellungen gelten</translation>
     </message>
     <message>
         <source>login</source>
@@ -478,6 +410,66 @@
         <translation>strittig</translation>
     </message>
     <message>
+        <source>check power and cable of the camera; the station reconnects automatically</source>
+        <translation>Versorgung und Kabel der Kamera prüfen; die Station verbindet sich automatisch neu</translation>
+    </message>
+    <message>
+        <source>free space on the archive&apos;s disk; check that it is writable</source>
+        <translation>Platz auf dem Archivdatenträger schaffen; prüfen, ob er beschreibbar ist</translation>
+    </message>
+    <message>
+        <source>the archive&apos;s disk is nearly full</source>
+        <translation>Archivdatenträger fast voll</translation>
+    </message>
+    <message>
+        <source>free space, or shorten the retention (archive.keep)</source>
+        <translation>Platz schaffen oder die Aufbewahrung verkürzen (archive.keep)</translation>
+    </message>
+    <message>
+        <source>PLC heartbeat lost</source>
+        <translation>SPS-Heartbeat ausgefallen</translation>
+    </message>
+    <message>
+        <source>self-test failed: the stored frame is judged differently</source>
+        <translation>Selbsttest fehlgeschlagen: das gespeicherte Bild wird anders beurteilt</translation>
+    </message>
+    <message>
+        <source>restart the station; if it comes back, check the PC&apos;s memory</source>
+        <translation>Station neu starten; falls es wiederkehrt, Speicher des PCs prüfen</translation>
+    </message>
+    <message>
+        <source>check master, light and focus; run the master check again</source>
+        <translation>Meisterteil, Licht und Schärfe prüfen; Meisterteil erneut prüfen</translation>
+    </message>
+    <message>
+        <source>master check is due</source>
+        <translation>Prüfung der Meisterteile fällig</translation>
+    </message>
+    <message>
+        <source>run the master check</source>
+        <translation>Prüfung der Meisterteile durchführen</translation>
+    </message>
+    <message>
+        <source>image drift detected</source>
+        <translation>Bilddrift erkannt</translation>
+    </message>
+    <message>
+        <source>see the engine&apos;s log; the previous settings stay active</source>
+        <translation>siehe Protokoll der Engine; die bisherigen Einstellungen bleiben aktiv</translation>
+    </message>
+    <message>
+        <source>check the program of the line</source>
+        <translation>Programm der Linie prüfen</translation>
+    </message>
+    <message>
+        <source>the connection was lost while the result was written</source>
+        <translation>Verbindung beim Schreiben des Ergebnisses verloren</translation>
+    </message>
+    <message>
+        <source>judge the part again; if it comes back, check that a part is in the nest and in the camera&apos;s view</source>
+        <translation>Teil neu prüfen; tritt es erneut auf: prüfen, ob ein Teil in der Aufnahme und im Blickfeld der Kamera liegt</translation>
+    </message>
+    <message>
         <source>operator</source>
         <translation>Bediener</translation>
     </message>
@@ -514,6 +506,10 @@
         <translation>Fenster geschlossen</translation>
     </message>
     <message>
+        <source>the station&apos;s disk is nearly full</source>
+        <translation>Datenträger der Station fast voll</translation>
+    </message>
+    <message>
         <source>cleared by RESULT_ACK</source>
         <translation>gelöscht durch RESULT_ACK</translation>
     </message>
@@ -524,18 +520,6 @@
     <message>
         <source>cleared by the station: too old, offline or link lost, not acknowledged</source>
         <translation>von der Station gelöscht: zu alt, offline oder Verbindung fort, nicht quittiert</translation>
-    </message>
-    <message>
-        <source>PLC_HEARTBEAT stands still</source>
-        <translation>PLC_HEARTBEAT steht</translation>
-    </message>
-    <message>
-        <source>TRIGGER not taken</source>
-        <translation>TRIGGER nicht angenommen</translation>
-    </message>
-    <message>
-        <source>the station&apos;s disk fills</source>
-        <translation>die Platte der Station füllt sich</translation>
     </message>
     <message>
         <source>the disk was too slow</source>
@@ -558,6 +542,38 @@
         <translation>keine Fehlerkarte: ein anderes Modell hat dieses Teil beurteilt</translation>
     </message>
     <message>
+        <source>another user logged in</source>
+        <translation>anderer Benutzer angemeldet</translation>
+    </message>
+    <message>
+        <source>engine stopped</source>
+        <translation>Engine beendet</translation>
+    </message>
+    <message>
+        <source>another user is in service mode</source>
+        <translation>anderer Benutzer ist im Servicebetrieb</translation>
+    </message>
+    <message>
+        <source>too many changes of settings are waiting. Try again.</source>
+        <translation>Zu viele Änderungen warten. Bitte wiederholen.</translation>
+    </message>
+    <message>
+        <source>there was no pause between parts: nothing was changed. Try again.</source>
+        <translation>Keine Pause zwischen den Teilen: nichts geändert. Bitte wiederholen.</translation>
+    </message>
+    <message>
+        <source>the settings file had another value at the start</source>
+        <translation>Einstellungsdatei enthielt beim Start einen anderen Wert</translation>
+    </message>
+    <message>
+        <source>the settings file cannot be used: see the engine&apos;s log. The previous settings stay active.</source>
+        <translation>Einstellungsdatei nicht verwendbar: siehe Protokoll der Engine. Die bisherigen Einstellungen bleiben aktiv.</translation>
+    </message>
+    <message>
+        <source>PLC_HEARTBEAT does not change</source>
+        <translation>PLC_HEARTBEAT ändert sich nicht</translation>
+    </message>
+    <message>
         <source>rule broken: TRIGGER while READY was 0</source>
         <translation>Regelbruch: TRIGGER bei READY 0</translation>
     </message>
@@ -572,6 +588,10 @@
     <message>
         <source>rule broken: TRIGGER_ID 0 or repeated</source>
         <translation>Regelbruch: TRIGGER_ID 0 oder wiederholt</translation>
+    </message>
+    <message>
+        <source>TRIGGER not accepted</source>
+        <translation>TRIGGER nicht angenommen</translation>
     </message>
     <message>
         <source>rule broken: TRIGGER or RESULT_ACK held too long</source>
@@ -639,7 +659,7 @@
     </message>
     <message>
         <source>records cannot be written</source>
-        <translation>Datensätze nicht schreibbar</translation>
+        <translation>Datensätze können nicht geschrieben werden</translation>
     </message>
     <message>
         <source>the inspection has stopped</source>
@@ -670,10 +690,6 @@
         <translation>interner Fehler: siehe Logdatei der Station</translation>
     </message>
     <message>
-        <source>somebody else works on the station</source>
-        <translation>jemand anderes arbeitet an der Station</translation>
-    </message>
-    <message>
         <source>there is no such alarm</source>
         <translation>diesen Alarm gibt es nicht</translation>
     </message>
@@ -682,28 +698,12 @@
         <translation>ein Grund ist nötig</translation>
     </message>
     <message>
-        <source>there was no moment without a part in work: nothing was changed</source>
-        <translation>es gab keinen Augenblick ohne Teil in Arbeit: nichts wurde geändert</translation>
-    </message>
-    <message>
-        <source>too many changes of settings wait: try again</source>
-        <translation>zu viele Änderungen von Einstellungen warten: erneut versuchen</translation>
-    </message>
-    <message>
         <source>the camera cannot be used with these values: see the engine&apos;s log</source>
         <translation>die Kamera arbeitet mit diesen Werten nicht: siehe Logdatei der Station</translation>
     </message>
     <message>
-        <source>the settings file cannot be used: see the engine&apos;s log; the settings before stay in use</source>
-        <translation>die Einstellungsdatei ist nicht verwendbar: siehe Logdatei der Station; die bisherigen Einstellungen gelten</translation>
-    </message>
-    <message>
         <source>not in the settings file at the start</source>
         <translation>beim Start nicht in der Einstellungsdatei</translation>
-    </message>
-    <message>
-        <source>the settings file said otherwise at the start</source>
-        <translation>beim Start stand in der Einstellungsdatei etwas anderes</translation>
     </message>
     <message>
         <source>settings file</source>
@@ -712,10 +712,6 @@
     <message>
         <source>read again</source>
         <translation>neu gelesen</translation>
-    </message>
-    <message>
-        <source>the engine stops</source>
-        <translation>das Prüfprogramm wird beendet</translation>
     </message>
     <message>
         <source>service mode</source>
@@ -732,14 +728,6 @@
     <message>
         <source>begins</source>
         <translation>beginnt</translation>
-    </message>
-    <message>
-        <source>over</source>
-        <translation>beendet</translation>
-    </message>
-    <message>
-        <source>another one logs in</source>
-        <translation>ein anderer meldet sich an</translation>
     </message>
     <message>
         <source>user changed</source>

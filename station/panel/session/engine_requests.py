@@ -25,8 +25,8 @@ class _Unsent:
 class EngineRequests(QObject):
     """Sends requests and knows who waits for their answers.
 
-    Events and requests have connections of their own. A request for an engine whose events come waits until its
-    connection is there too; one for an engine that is not there is given up at once.
+    Events and requests have connections of their own. A request for an engine whose events come waits until
+    its connection is there too; one for an engine that is not there is given up at once.
     """
 
     def __init__(self, bridge: Bridge) -> None:

@@ -36,34 +36,35 @@ class Explained:
     action: str
 
 
-TEXTS: dict[int, Explained] = {  # printed in the register map: part of the interface
+TEXTS: dict[int, Explained] = {
     Alarm.CAMERA_LOST: Explained(
-        "camera lost", "check power and cable of the camera; the station connects again by itself"
+        "camera lost", "check power and cable of the camera; the station reconnects automatically"
     ),
     Alarm.ARCHIVE_FULL: Explained(
-        "no records can be written", "make room on the archive's disk, check that it is writable"
+        "records cannot be written", "free space on the archive's disk; check that it is writable"
     ),
-    Alarm.DISK_FILLS: Explained("the archive's disk fills", "make room, or keep less (archive.keep)"),
-    Alarm.PLC_SILENT: Explained(
-        "the PLC's heartbeat stands still", "check the PLC program and the network to the PLC"
+    Alarm.DISK_FILLS: Explained(
+        "the archive's disk is nearly full", "free space, or shorten the retention (archive.keep)"
     ),
+    Alarm.PLC_SILENT: Explained("PLC heartbeat lost", "check the PLC program and the network to the PLC"),
     Alarm.SELF_TEST_FAILED: Explained(
-        "the stored frame is judged differently", "restart the station; check the PC's memory"
+        "self-test failed: the stored frame is judged differently",
+        "restart the station; if it comes back, check the PC's memory",
     ),
     Alarm.MASTER_WRONG: Explained(
-        "a master was judged wrongly", "check master, light and focus; judge the master again"
+        "a master was judged wrongly", "check master, light and focus; run the master check again"
     ),
-    Alarm.MASTERS_DUE: Explained("the check of the masters is due", "put the masters in and judge them"),
+    Alarm.MASTERS_DUE: Explained("master check is due", "run the master check"),
     Alarm.PICTURES_DRIFT: Explained(
-        "the pictures drift", "check light, focus, glass and the surface of the parts"
+        "image drift detected", "check light, focus, glass and the surface of the parts"
     ),
     Alarm.SETTINGS_REFUSED: Explained(
-        "changed settings could not be used", "see the engine's log; the settings before are in use"
+        "changed settings could not be used", "see the engine's log; the previous settings stay active"
     ),
     ERROR_DEADLINE: Explained(
         "no result within the deadline", "see cycle times on the page Statistics; check the PC's load"
     ),
-    ERROR_ABORTED: Explained("the PLC aborted the part", "see the line's program"),
+    ERROR_ABORTED: Explained("the PLC aborted the part", "check the program of the line"),
     ERROR_BAD_TRIGGER_ID: Explained(
         "TRIGGER_ID was 0 or repeated", "correct the PLC program: each part needs a new number"
     ),
@@ -71,14 +72,14 @@ TEXTS: dict[int, Explained] = {  # printed in the register map: part of the inte
         "TRIGGER or RESULT_ACK was held too long", "correct the PLC program: see the page Line"
     ),
     ERROR_LINK_LOST: Explained(
-        "the link was lost while the result was written", "check the network to the PLC"
+        "the connection was lost while the result was written", "check the network to the PLC"
     ),
 }
 
 """Explanation by alarm or error code."""
 _AGAIN = "judge the part again; if it comes back, "
 _PART_ACTIONS = {
-    Reason.NO_WELD_FOUND: "check that a part lies in the nest, and the camera's view",
+    Reason.NO_WELD_FOUND: "check that a part is in the nest and in the camera's view",
     Reason.WELD_OUT_OF_VIEW: "check the part's seat and the camera's position",
     Reason.WRONG_SIZE: "set width and height of the camera as in the settings",
     Reason.INCOMPLETE_FRAME: "check network cable, switch and jumbo frames",

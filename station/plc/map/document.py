@@ -65,8 +65,8 @@ def as_markdown() -> str:
     text += "\n## REASON\n\n" + _table(
         ("value", "meaning"), [(str(reason.code), str(reason)) for reason in Reason]
     )
-    text += "\n## ERROR_CODE\n\nThe same code stands in the window of the station. "
-    text += "From 16#3000 on: states that last, told while\nnothing else is.\n\n"
+    text += "\n## ERROR_CODE\n\nThe window of the station shows the same code. "
+    text += "Codes from 16#3000 on are active alarms;\nthey are shown while there is no other error.\n\n"
     return text + _table(
         ("value", "cause", "what to do"),
         [(f"16#{code:04X}", text.cause, text.action) for code, text in sorted(TEXTS.items())],
