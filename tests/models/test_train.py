@@ -18,7 +18,7 @@ from models.errors import LearningError
 from models.evaluation.detection import boxes, evaluate_boxes
 from models.paper.train import PaperPlan, paper_scores, train_paper
 from station.classify.onnx import Classifier
-from station.defects import KINDS
+from tests import parts
 from tests.conftest import MODEL
 from tests.models.made import HOLE, crops, dataset
 
@@ -137,7 +137,7 @@ def test_boxes_lie_on_the_defects(run: Path, data: Path) -> None:
 def test_a_box_does_not_close_over_the_borders_of_a_crop() -> None:
     maps = np.zeros((2, 32, 32), np.float32)
     maps[0, 10:14, :4] = maps[0, 10:14, 28:] = 1
-    assert sorted(b.box_px for b in boxes(maps, {KINDS[0]: 0.9, KINDS[1]: 0.1})) == [
+    assert sorted(b.box_px for b in boxes(maps, {parts.HOLE: 0.9, parts.MISSING_WELD: 0.1})) == [
         (0.0, 40.0, 16.0, 16.0),
         (112.0, 40.0, 16.0, 16.0),
     ]

@@ -23,10 +23,10 @@ from tests.station.test_settings import GOOD
 
 OLD_RECORDS = Path(__file__).parent / "old_records"
 RING = Ring(600.0, 600.0, 428.0, 1.0)
-HOLE, GONE = KINDS[0], KINDS[-1]
-CRACK = DefectKind(name="crack", reason=Reason.BLURRED, color_rgb=(0, 200, 255), line_fraction=0.01)
+HOLE, GONE = kind_named("hole"), kind_named("missing_weld")
+DENT = DefectKind(name="dent", reason=Reason.BLURRED, color_rgb=(0, 200, 255), line_fraction=0.01)
 """A kind that the station does not ship, with a reason that it does not need otherwise here."""
-THREE = (HOLE, CRACK, GONE)
+THREE = (HOLE, DENT, GONE)
 
 CODES = {
     2: {
@@ -102,21 +102,21 @@ def area(kind: DefectKind, rows: slice, columns: slice) -> np.ndarray[tuple[int,
 def test_a_third_kind_is_rejected_under_its_own_name() -> None:
     for kind in THREE:
         assert segment_kind(scores(**{kind.name: 0.9}), limits()) == kind
-    judged = row(s4=scores(crack=0.9))
-    assert rejected_kinds(judged, (), limits())[4] is CRACK.reason
+    judged = row(s4=scores(dent=0.9))
+    assert rejected_kinds(judged, (), limits())[4] is DENT.reason
 
 
 def test_a_third_kind_inherits_no_minimum_length_of_another() -> None:
-    """A crack must not be tolerated because short missing welds are."""
-    judged, maps = row(s4=scores(crack=0.9)), area(CRACK, slice(14, 18), slice(10, 14))
+    """A dent must not be tolerated because short missing welds are."""
+    judged, maps = row(s4=scores(dent=0.9)), area(DENT, slice(14, 18), slice(10, 14))
     found = findings(judged, maps, THREE, limits(), ring=RING, um_per_px=13.0)
     for others in ({"missing_weld": 3.0}, {"hole": 3.0}, {"missing_weld": 3.0, "hole": 3.0}):
-        assert rejected_kinds(judged, found, limits(others))[4] is CRACK.reason
-    assert rejected_kinds(judged, found, limits({"crack": 3.0}))[4] is None
+        assert rejected_kinds(judged, found, limits(others))[4] is DENT.reason
+    assert rejected_kinds(judged, found, limits({"dent": 3.0}))[4] is None
 
 
 def test_a_third_kind_over_its_threshold_forbids_to_tolerate_the_likeliest() -> None:
-    for other in (CRACK, GONE):
+    for other in (DENT, GONE):
         judged = row(s4=scores(hole=0.51, **{other.name: 0.46}))
         low = Thresholds(tuple(Limit(kind, 0.4, 3.0 if kind == HOLE else 0.0) for kind in THREE))
         found = findings(
@@ -144,17 +144,17 @@ def test_each_kind_is_measured_as_it_says() -> None:
 
 
 def test_a_kind_that_has_no_map_is_found_by_whole_segments() -> None:
-    judged = row(s4=scores(crack=0.9), s5=scores(crack=0.8))
+    judged = row(s4=scores(dent=0.9), s5=scores(dent=0.8))
     maps = np.zeros((SEGMENTS, 2, CELLS, CELLS), np.float32)
-    (found,) = findings(judged, maps, (HOLE, GONE), limits({"crack": 5.0}), ring=RING, um_per_px=13.0)
-    assert (found.kind, found.width_mm, found.score) == (CRACK.reason, None, pytest.approx(0.9))
-    assert rejected_kinds(judged, (found,), limits({"crack": 5.0}))[4:6] == (CRACK.reason,) * 2
+    (found,) = findings(judged, maps, (HOLE, GONE), limits({"dent": 5.0}), ring=RING, um_per_px=13.0)
+    assert (found.kind, found.width_mm, found.score) == (DENT.reason, None, pytest.approx(0.9))
+    assert rejected_kinds(judged, (found,), limits({"dent": 5.0}))[4:6] == (DENT.reason,) * 2
 
 
 def test_limits_of_a_kind_that_the_model_does_not_know_are_refused() -> None:
     of_model = Thresholds((Limit(HOLE, 0.46), Limit(GONE, 0.34)))
-    with pytest.raises(SettingsError, match=r"model\.limits\.crack: .*it knows hole, missing_weld"):
-        in_use(of_model, {"crack": LimitSettings(threshold=0.5)}, {})
+    with pytest.raises(SettingsError, match=r"model\.limits\.dent: .*it knows hole, missing_weld"):
+        in_use(of_model, {"dent": LimitSettings(threshold=0.5)}, {})
     assert in_use(of_model, {"hole": LimitSettings(min_mm=0.2)}, {}).of(HOLE) == Limit(HOLE, 0.46, 0.2)
 
 

@@ -16,11 +16,11 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 import station.defects
-from station.defects import DefectKind, KINDS, Reason
+from station.defects import DefectKind, Reason, kind_named
 dent = DefectKind(name="dent", reason=Reason.HOLE, color_rgb=(0, 0, 255), line_fraction=0.01)
 seen = DefectKind(name="smear", reason=Reason.HOLE, color_rgb=(0, 0, 255), line_fraction=0.01,
                   is_mapped=False)
-station.defects.KINDS = (KINDS[0], dent, seen, KINDS[1])
+station.defects.KINDS = (kind_named("hole"), dent, seen, kind_named("missing_weld"))
 
 from synth.defects import hole, kinds
 
