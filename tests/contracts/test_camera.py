@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import get_args
+from typing import assert_never, get_args
 
 import cv2
 import numpy as np
@@ -20,6 +20,14 @@ from synth.camera.feed import Feed
 
 Make = Callable[[list[Image]], Camera]
 SMALL = {"width_px": 1280, "height_px": 1040}
+EMULATED = PylonSettings(
+    kind="pylon", device_class="BaslerCamEmu", serial="0815-0000", timeout_ms=400, **SMALL
+)
+CAMERAS: dict[str, AnyCamera] = {
+    "pylon": EMULATED,
+    "replay": ReplaySettings(kind="replay", folder=Path("images")),
+}
+"""Settings of a camera of each make. A new camera goes here, and gets a branch of `make`."""
 
 
 def picture(level: int) -> Image:
@@ -32,11 +40,7 @@ class Fed(PylonCamera):
     """The production camera with a feed that shows the next image before each grab."""
 
     def __init__(self, feed: Feed, images: list[Image]) -> None:
-        super().__init__(
-            PylonSettings(
-                kind="pylon", device_class="BaslerCamEmu", serial="0815-0000", timeout_ms=400, **SMALL
-            )
-        )
+        super().__init__(EMULATED)
         self.feed, self.images = feed, images
 
     def grab(self):  # type: ignore[no-untyped-def]
@@ -45,26 +49,31 @@ class Fed(PylonCamera):
         return super().grab()
 
 
-CAMERAS = {"pylon": PylonSettings, "replay": ReplaySettings}
-"""A new camera goes here, and gets a branch of `make`."""
+@pytest.fixture(params=CAMERAS.values(), ids=CAMERAS)
+def settings(request: pytest.FixtureRequest) -> AnyCamera:
+    return request.param  # type: ignore[no-any-return]
 
 
-@pytest.fixture(params=CAMERAS)
-def make(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Make]:
+@pytest.fixture
+def make(settings: AnyCamera, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Make]:
     made: list[Camera] = []
 
     def build(images: list[Image]) -> Camera:
-        if request.param == "pylon":
-            feed = Feed(tmp_path / "feed")
-            for name, value in feed.environment.items():
-                monkeypatch.setenv(name, value)
-            camera: Camera = Fed(feed, list(images))
-        else:
-            folder = tmp_path / "images"
-            folder.mkdir()
-            for index, image in enumerate(images):
-                cv2.imwrite(str(folder / f"{index:03d}.png"), image)
-            camera = ReplayCamera(ReplaySettings(kind="replay", folder=folder))
+        camera: Camera
+        match settings:
+            case PylonSettings():
+                feed = Feed(tmp_path / "feed")
+                for name, value in feed.environment.items():
+                    monkeypatch.setenv(name, value)
+                camera = Fed(feed, list(images))
+            case ReplaySettings():
+                folder = tmp_path / settings.folder
+                folder.mkdir()
+                for index, image in enumerate(images):
+                    cv2.imwrite(str(folder / f"{index:03d}.png"), image)
+                camera = ReplayCamera(settings.model_copy(update={"folder": folder}))
+            case _:
+                assert_never(settings)
         made.append(camera)
         return camera
 
@@ -74,20 +83,12 @@ def make(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_every_camera_that_settings_may_name_is_held_to_the_contract() -> None:
-    assert set(CAMERAS.values()) == set(get_args(AnyCamera))
-    for kind, settings in CAMERAS.items():
-        assert get_args(settings.model_fields["kind"].annotation) == (kind,)
+    assert {type(settings) for settings in CAMERAS.values()} == set(get_args(AnyCamera))
+    assert list(CAMERAS) == [settings.kind for settings in CAMERAS.values()]
 
 
-@pytest.mark.parametrize(
-    ("settings", "made"),
-    [
-        (PylonSettings(kind="pylon", serial="1"), PylonCamera),
-        (ReplaySettings(kind="replay", folder=Path("a")), ReplayCamera),
-    ],
-)
-def test_the_settings_name_the_camera(settings: AnyCamera, made: type[Camera]) -> None:
-    assert type(make_camera(settings)) is made
+def test_the_settings_name_the_camera(settings: AnyCamera, make: Make) -> None:
+    assert isinstance(make([]), type(make_camera(settings)))
 
 
 def test_the_settings_of_a_camera_say_what_it_is_and_what_can_be_set() -> None:
@@ -99,6 +100,7 @@ def test_the_settings_of_a_camera_say_what_it_is_and_what_can_be_set() -> None:
     assert recorded.identity == ("replay",)
     assert recorded.adjustable is None
     # what a new make gets without saying anything: parts count as real, nothing can be set in the window
+    assert (EMULATED.origin, recorded.origin) == (Origin.SIMULATED, Origin.REPLAY)
     assert CameraSettings(kind="new").origin is Origin.CAMERA
     assert CameraSettings(kind="new").adjustable is None
 
@@ -115,7 +117,7 @@ def test_the_configuration_of_a_camera_is_written_as_ever() -> None:
     )
 
 
-def test_each_trigger_gives_the_next_picture_to_the_pixel(make: Make) -> None:
+def test_each_trigger_gives_the_next_picture_to_the_pixel(settings: AnyCamera, make: Make) -> None:
     images = [picture(level) for level in (10, 200, 90)]
     camera = make(images)
     camera.open()
@@ -123,7 +125,7 @@ def test_each_trigger_gives_the_next_picture_to_the_pixel(make: Make) -> None:
         frame = camera.grab()
         assert (frame.image == wanted).all()
         assert frame.image.dtype == np.uint8
-        assert frame.origin is not Origin.CAMERA
+        assert frame.origin is settings.origin
         assert frame.grabbed_at.tzinfo is not None
         assert frame.source
 
