@@ -11,7 +11,17 @@ from deploy.chaos.judge import judged
 from station.plc.handshake import ready, step
 from station.plc.handshake_state import Inputs, State, Step, Times
 from station.plc.map import status_window
-from station.plc.map.registers import REFUSED, CommandCode, Control, Offline, Status, VerdictCode, number
+from station.plc.map.registers import (
+    MAP,
+    REFUSED,
+    STATUS_START,
+    CommandCode,
+    Control,
+    Offline,
+    Status,
+    VerdictCode,
+    number,
+)
 from station.plc.port import Command, Counts, Health, Result, Trigger
 
 WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7)
@@ -124,6 +134,13 @@ def test_a_part_from_trigger_to_acknowledge(plc: Driver) -> None:
     plc.control = ON
     plc.step()
     assert Status.READY in plc.bits()
+
+
+def test_every_register_of_the_status_window_has_a_value_while_a_result_is_shown(plc: Driver) -> None:
+    """A register without one would read 0 forever."""
+    plc.trigger(1)
+    plc.step(result(plc.started[-1]))
+    assert set(plc.values()) == {register.name for register in MAP if register.address >= STATUS_START}
 
 
 def test_the_old_result_is_gone_before_trigger_ack(plc: Driver) -> None:
