@@ -6,6 +6,7 @@ import cv2
 import pytest
 
 from synth.__main__ import main
+from synth.output.plan import quotas
 
 
 @pytest.mark.render
@@ -14,7 +15,8 @@ def test_a_sheet_of_a_dataset_and_of_the_switches(tmp_path: Path, capsys: pytest
     assert main(["dataset", "--out", str(tmp_path / "set"), *options]) == 0
     assert main(["sheet", str(tmp_path / "set"), "--out", str(tmp_path / "set.png")]) == 0
     image = cv2.imread(str(tmp_path / "set.png"), cv2.IMREAD_UNCHANGED)
-    assert image.shape == (4 * 134 + 3 * 26, 12 * 134 + 6)
+    blocks = quotas(26).values()
+    assert image.shape == (sum(-(-crops // 12) for crops in blocks) * 134 + len(blocks) * 26, 12 * 134 + 6)
     assert main(["sheet", "--out", str(tmp_path / "switches.png")]) == 0
     image = cv2.imread(str(tmp_path / "switches.png"), cv2.IMREAD_UNCHANGED)
     assert image.shape[0] == 9 * (134 + 26)
