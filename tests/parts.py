@@ -13,7 +13,6 @@ from station.records import Provenance, Record
 
 HOLE, MISSING_WELD = kind_named("hole"), kind_named("missing_weld")
 FRAMES = Path(__file__).resolve().parent.parent / "deploy" / "frames"
-HOLE, MISSING_WELD = kind_named("hole"), kind_named("missing_weld")
 
 
 def labels() -> list[dict[str, Any]]:
