@@ -42,7 +42,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def add(name: str, command: object, text: str, settings: bool = True) -> argparse.ArgumentParser:
-        sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+        sub = commands.add_parser(name, help=text, description=_sentence(text))
         sub.set_defaults(command=command)
         if settings:
             sub.add_argument(
@@ -117,11 +117,8 @@ def _parser() -> argparse.ArgumentParser:
         _check,
         "check settings, models, archive, camera and PLC; report what is wrong and what to do",
     )
-    add_commands(
-        commands.add_parser(
-            "records", help="list, verify, prune, export and report the records of an archive"
-        )
-    )
+    about = "list, verify, prune, export and report the records of an archive"
+    add_commands(commands.add_parser("records", help=about, description=_sentence(about)))
     registers = add(
         "registers", _registers, "print the register map or the PLC function block", settings=False
     )
@@ -152,6 +149,10 @@ def _parser() -> argparse.ArgumentParser:
         "--days", type=int, default=90, metavar="N", help="days of validity (default: %(default)s)"
     )
     return parser
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."
 
 
 def _engine(arguments: argparse.Namespace) -> int:

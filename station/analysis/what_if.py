@@ -38,11 +38,11 @@ class Flip:
 class WhatIf:
     """Result of a what-if."""
 
-    looked_at: int
+    compared: int
     """Number of parts with scores."""
     released: tuple[Flip, ...]
     """Parts that were NOK or not judged, and would be OK."""
-    refused: tuple[Flip, ...]
+    rejected: tuple[Flip, ...]
     """Parts that were OK, and would be NOK or not judged."""
     unknown: int
     """Number of parts without scores that would pass the new quality gate; their verdict is unknown."""
@@ -50,9 +50,9 @@ class WhatIf:
 
 def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualitySettings) -> WhatIf:
     """Return what other limits would change for the recorded parts; masters and test images do not count."""
-    looked_at, unknown = 0, 0
+    compared, unknown = 0, 0
     released: list[Flip] = []
-    refused: list[Flip] = []
+    rejected: list[Flip] = []
     for record in records:
         inspection = record.inspection
         if record.purpose is not Purpose.PART:
@@ -61,7 +61,7 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
         if not inspection.scores:
             unknown += inspection.reason in QUALITY and not poor
             continue
-        looked_at += 1
+        compared += 1
         bad = any(rejected_kinds(inspection.scores, inspection.findings, thresholds))
         after = Verdict.ERROR if poor else Verdict.NOK if bad else Verdict.OK
         if (after is Verdict.OK) == (record.verdict is Verdict.OK):
@@ -75,5 +75,5 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
             segment=worst + 1,
             score=inspection.scores[worst].nok,
         )
-        (released if after is Verdict.OK else refused).append(flip)
-    return WhatIf(looked_at, tuple(released), tuple(refused), unknown)
+        (released if after is Verdict.OK else rejected).append(flip)
+    return WhatIf(compared, tuple(released), tuple(rejected), unknown)

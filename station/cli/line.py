@@ -86,4 +86,5 @@ class _ListFaults(argparse.Action):
         """Print one name per line."""
         from station.plc.simulated.line import Fault
 
-        parser.exit(message="".join(f"{fault}\n" for fault in Fault))
+        print("\n".join(Fault))
+        parser.exit()

@@ -56,8 +56,8 @@ def test_numbers_go_on_after_a_restart(archive: Archive, tmp_path: Path) -> None
     again.close()
 
 
-@pytest.mark.parametrize(("suffix", "said"), [("json", "modified"), ("png", "modified")])
-def test_a_changed_file_is_named(suffix: str, said: str, archive: Archive, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("suffix", "message"), [("json", "modified"), ("png", "modified")])
+def test_a_changed_file_is_named(suffix: str, message: str, archive: Archive, tmp_path: Path) -> None:
     put(archive, np.zeros((8, 8), np.uint8), ok_inspection())
     (path,) = tmp_path.rglob(f"*.{suffix}")
     data = bytearray(path.read_bytes())
@@ -65,7 +65,7 @@ def test_a_changed_file_is_named(suffix: str, said: str, archive: Archive, tmp_p
     path.write_bytes(data)
     (entry,) = read_records(tmp_path)
     assert entry.problem is not None
-    assert said in entry.problem
+    assert message in entry.problem
 
 
 def test_a_deleted_frame_is_named(archive: Archive, tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ def test_a_reference_comes_back_from_its_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "model", "size", "said"),
+    ("text", "model", "size", "message"),
     [
         (None, "abc", 2, "cannot be read"),
         ("{", "abc", 2, "not a reference"),
@@ -55,13 +55,13 @@ def test_a_reference_comes_back_from_its_file(tmp_path: Path) -> None:
     ],
 )
 def test_a_reference_that_does_not_fit_is_refused(
-    text: str | None, model: str, size: int, said: str, tmp_path: Path
+    text: str | None, model: str, size: int, message: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "line.json"
     if text == "good":
         write_reference(path, REFERENCE)
     elif text is not None:
         path.write_text(text)
-    with pytest.raises(ModelError, match=said) as error:
+    with pytest.raises(ModelError, match=message) as error:
         read_reference(path, model, size)
     assert "first-day --reference" in str(error.value)

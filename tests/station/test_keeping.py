@@ -87,7 +87,7 @@ def exchange(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("harm", "place", "said"),
+    ("harm", "place", "message"),
     [
         (lambda f: a_file(f, 7, "json").unlink(), "00000007.json", "cannot be read"),
         (lambda f: a_file(f, 7, "png").unlink(), "00000007.json", "its frame"),
@@ -111,13 +111,13 @@ def exchange(folder: Path) -> None:
     ],
 )
 def test_what_is_missing_modified_or_deleted_is_named(
-    harm: Callable[[Path], object], place: str, said: str, folder: Path, capsys: pytest.CaptureFixture[str]
+    harm: Callable[[Path], object], place: str, message: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert list(verify(folder)) == []
     assert main(["records", "verify", str(folder)]) == 0
     harm(folder)
     found = list(verify(folder))
-    assert any(place in where and said in problem for where, problem in found), found
+    assert any(place in where and message in problem for where, problem in found), found
     assert main(["records", "verify", str(folder)]) == 1
     assert place in capsys.readouterr().err
 
@@ -156,10 +156,10 @@ def test_the_quota_lets_ok_go_before_nok(folder: Path) -> None:
     quota = sum(sizes.values()) - 5 * max(sizes.values())
     keep = KeepSettings(ok_all_days=999, ok_days=999, quota_gib=quota / (1 << 30))
     done = prune(folder, keep, NOW)
-    gone = [row for row in find(folder) if row.frame_state == "pruned"]
-    assert {row.verdict for row in gone} == {"OK"}
-    assert len(gone) == done.frames >= 5
-    assert sum(s for n, s in sizes.items() if n not in {row.inspection_id for row in gone}) <= quota
+    deleted = [row for row in find(folder) if row.frame_state == "pruned"]
+    assert {row.verdict for row in deleted} == {"OK"}
+    assert len(deleted) == done.frames >= 5
+    assert sum(s for n, s in sizes.items() if n not in {row.inspection_id for row in deleted}) <= quota
 
 
 def test_a_dry_run_changes_nothing_and_says_the_same(
@@ -199,11 +199,11 @@ def test_what_a_stopped_pruning_left_is_removed_by_the_next(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("station.archive.prune._Work._remove", lambda *_: None)
-    gone = prune(folder, KEEP, NOW).frames
+    deleted = prune(folder, KEEP, NOW).frames
     pictures = len(list(folder.rglob("0*.png")))
     monkeypatch.undo()
     prune(folder, KEEP, NOW)
-    assert len(list(folder.rglob("0*.png"))) == pictures - gone
+    assert len(list(folder.rglob("0*.png"))) == pictures - deleted
 
 
 def test_a_lost_index_is_not_begun_again_over_the_records(folder: Path) -> None:

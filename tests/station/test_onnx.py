@@ -48,7 +48,7 @@ def test_a_model_without_its_metadata_is_refused(key: str, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "said"),
+    ("key", "value", "message"),
     [
         ("weldgate.classes", '["a", "b"]', "classes"),
         ("weldgate.thresholds", "[]", "cannot be read"),
@@ -58,9 +58,9 @@ def test_a_model_without_its_metadata_is_refused(key: str, tmp_path: Path) -> No
         ("weldgate.novelty_limit", "-1", "above 0"),
     ],
 )
-def test_foreign_metadata_is_refused(key: str, value: str, said: str, tmp_path: Path) -> None:
+def test_foreign_metadata_is_refused(key: str, value: str, message: str, tmp_path: Path) -> None:
     model = onnx.load(str(MODEL))
     next(m for m in model.metadata_props if m.key == key).value = value
     onnx.save(model, str(tmp_path / "odd.onnx"))
-    with pytest.raises(ModelError, match=said):
+    with pytest.raises(ModelError, match=message):
         Classifier(tmp_path / "odd.onnx")

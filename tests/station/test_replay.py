@@ -44,14 +44,14 @@ def test_a_folder_of_all_sorts_is_judged_as_far_as_it_can_be(
     (folder / "loop").symlink_to(folder)
     (folder / "self.png").symlink_to(folder / "self.png")
     assert main(["replay", str(folder), "--json", str(tmp_path / "out.json"), "--processes", "1"]) == 1
-    said = capsys.readouterr()
+    output = capsys.readouterr()
     entries = json.loads((tmp_path / "out.json").read_text())
     assert sorted(entries) == ["again.png", "empty.png", "huge.tiff", "self.png", "text.png", "truncated.png"]
     assert entries["again.png"]["verdict"] == "OK", "of two names for one file the first"
     for name in ("empty.png", "huge.tiff", "self.png", "text.png"):
         assert entries[name]["verdict"] == "ERROR"
-        assert name in said.err
-    assert "larger than 512 MiB" in said.err
+        assert name in output.err
+    assert "larger than 512 MiB" in output.err
     assert entries["truncated.png"]["verdict"] in ("ERROR", "NOK"), "half a picture is never OK"
 
 
@@ -188,9 +188,9 @@ def test_an_archive_is_judged_as_on_the_line_to_the_bit(
     archive: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["replay", str(archive), "--processes", "1"]) == 0
-    said = capsys.readouterr().out
-    assert "4 parts, 0 verdicts flip" in said
-    assert "4, of which 4 agree bit for bit" in said
+    output = capsys.readouterr().out
+    assert "4 parts, 0 verdicts flip" in output
+    assert "4, of which 4 agree bit for bit" in output
 
 
 def test_a_candidate_is_compared_with_the_line(
@@ -232,10 +232,10 @@ def test_a_record_that_the_same_judge_judges_otherwise_is_a_fault(
     monkeypatch.undo()
     next(archive.rglob("00000002.png")).write_bytes((FRAMES / labels()[0]["frame"]).read_bytes())
     assert main(["replay", str(archive), "--processes", "1"]) == 1
-    said = capsys.readouterr()
-    assert said.err.count("not reproducible") == 3
-    assert "00000002.json: its frame 2026-11-22/00000002.png was modified" in said.err
-    assert "compared with the line: 3 parts" in said.out
+    output = capsys.readouterr()
+    assert output.err.count("not reproducible") == 3
+    assert "00000002.json: its frame 2026-11-22/00000002.png was modified" in output.err
+    assert "compared with the line: 3 parts" in output.out
 
 
 def test_one_image_that_cannot_be_judged_does_not_end_the_others(
@@ -244,6 +244,6 @@ def test_one_image_that_cannot_be_judged_does_not_end_the_others(
     cv2.imwrite(str(tmp_path / "dot.png"), np.zeros((1, 1), np.uint8))
     (tmp_path / "part.png").write_bytes((FRAMES / label_with("OK")["frame"]).read_bytes())
     assert main(["replay", str(tmp_path), "--um-per-px", "5", "--processes", "1"]) == 1
-    said = capsys.readouterr()
-    assert "dot.png: could not be judged" in said.err
-    assert said.out.startswith("2 images")
+    output = capsys.readouterr()
+    assert "dot.png: could not be judged" in output.err
+    assert output.out.startswith("2 images")

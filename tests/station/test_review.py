@@ -129,13 +129,13 @@ def test_what_if_with_the_same_limits_changes_nothing_and_stricter_ones_release_
 ) -> None:
     part = judged(scores)
     same = what_if([part], thresholds(0.5, 0.5), QualitySettings())
-    assert (same.released, same.refused) == ((), ())
+    assert (same.released, same.rejected) == ((), ())
     asked = what_if([part], thresholds(hole, missing), QualitySettings())
     if hole <= 0.5 and missing <= 0.5:
         assert asked.released == ()
     if hole >= 0.5 and missing >= 0.5:
-        assert asked.refused == ()
-    assert asked.looked_at == 1
+        assert asked.rejected == ()
+    assert asked.compared == 1
 
 
 def test_what_if_counts_parts_alone_and_says_what_nobody_knows() -> None:
@@ -147,10 +147,10 @@ def test_what_if_counts_parts_alone_and_says_what_nobody_knows() -> None:
         record(dark, 4),
     ]
     found = what_if(parts, thresholds(0.95, 0.95), QualitySettings(min_sharpness=0.0))
-    assert (found.looked_at, found.unknown) == (2, 1)
+    assert (found.compared, found.unknown) == (2, 1)
     assert [(f.inspection_id, f.before, f.after, f.segment) for f in found.released] == []
     sharper = what_if(parts, thresholds(0.5, 0.5), QualitySettings(min_sharpness=9.0))
-    assert [(f.inspection_id, f.after) for f in sharper.refused] == [(1, Verdict.ERROR)]
+    assert [(f.inspection_id, f.after) for f in sharper.rejected] == [(1, Verdict.ERROR)]
 
 
 @pytest.mark.parametrize(

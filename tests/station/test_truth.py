@@ -29,14 +29,14 @@ NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
 
 @given(st.dictionaries(st.text(), st.sampled_from(["OK", "NOK"])), st.dictionaries(st.text(), WORDS))
 def test_every_part_of_known_truth_is_right_or_one_kind_of_wrong(
-    truth: dict[str, str], said: dict[str, str]
+    truth: dict[str, str], judged: dict[str, str]
 ) -> None:
-    found = errors(truth, said)
-    known = [name for name in said if name in truth]
+    found = errors(truth, judged)
+    known = [name for name in judged if name in truth]
     wrong = [*found.escapes, *found.false_rejects, *found.not_judged]
     assert found.ok + found.nok == len(known)
     assert len(set(wrong)) == len(wrong)
-    assert set(known) - set(wrong) == {name for name in known if truth[name] == said[name]}
+    assert set(known) - set(wrong) == {name for name in known if truth[name] == judged[name]}
 
 
 @settings(deadline=None)  # the first call loads SciPy
@@ -53,7 +53,7 @@ def test_an_interval_of_nothing_and_of_twenty_of_twenty() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "said"),
+    ("name", "text", "message"),
     [
         ("t.csv", "part;truth\n", "columns name and verdict"),
         ("t.csv", "name,verdict\nA,good\n", "'A' is 'good'"),
@@ -64,10 +64,10 @@ def test_an_interval_of_nothing_and_of_twenty_of_twenty() -> None:
     ],
 )
 def test_a_truth_that_cannot_be_read_is_refused_in_one_line(
-    tmp_path: Path, name: str, text: str, said: str
+    tmp_path: Path, name: str, text: str, message: str
 ) -> None:
     (tmp_path / name).write_text(text)
-    with pytest.raises(RecordError, match=re.escape(said)) as caught:
+    with pytest.raises(RecordError, match=re.escape(message)) as caught:
         read_truth(tmp_path / name)
     assert "\n" not in str(caught.value)
     with pytest.raises(RecordError, match="cannot be read"):

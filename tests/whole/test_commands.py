@@ -1,15 +1,19 @@
 """The commands as a user types them, in processes of their own."""
 
+import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from deploy.demo.ports import free_ports
+from station.__main__ import _parser, main
 from station.archive.reader import read_records
 from station.channel.events import StatusEvent
 from station.channel.zeromq import Subscriber
@@ -93,7 +97,7 @@ SETTINGS = '[camera]\nkind = "pylon"\ndevice_class = "BaslerCamEmu"\nserial = "0
 
 
 @pytest.mark.parametrize(
-    ("command", "text", "said"),
+    ("command", "text", "message"),
     [
         (["engine"], None, "settings file not found"),
         (["engine"], "[camera]\nkind = 3\n", "camera"),
@@ -103,7 +107,7 @@ SETTINGS = '[camera]\nkind = "pylon"\ndevice_class = "BaslerCamEmu"\nserial = "0
     ],
 )
 def test_mistakes_end_with_one_line_and_code_2(
-    command: list[str], text: str | None, said: str, tmp_path: Path
+    command: list[str], text: str | None, message: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "station.toml"
     if text is not None:
@@ -111,13 +115,13 @@ def test_mistakes_end_with_one_line_and_code_2(
     done = run("station", *command, "-c", str(path))
     assert done.returncode == 2
     (line,) = [entry for entry in done.stderr.splitlines() if entry.startswith("weldgate:")]
-    assert said in line
+    assert message in line
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "records").exists()
 
 
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("command", "message"),
     [
         (["station", "replay", "/nowhere/at/all"], "no such file"),
         (["station", "records", "list", "/nowhere/at/all"], "no records found"),
@@ -125,11 +129,48 @@ def test_mistakes_end_with_one_line_and_code_2(
         (["station", "line", "--port", "1", "--parts", "1"], "no Modbus server"),
     ],
 )
-def test_wrong_paths_end_with_one_line_and_code_2(command: list[str], said: str) -> None:
+def test_wrong_paths_end_with_one_line_and_code_2(command: list[str], message: str) -> None:
     done = run(*command)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert message in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_the_simulated_line_lists_its_faults(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["line", "--list-faults"])
+    assert ended.value.code == 0
+    assert "silence" in capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize("option", ["--fault", "--knob"])
+def test_an_unknown_fault_is_refused_under_the_new_and_the_old_name(
+    option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["line", "--port", "1", "--parts", "1", option, "earthquake"]) == 2
+    message = capsys.readouterr().err
+    assert "earthquake" in message
+    assert "silence" in message
+
+
+def parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """Yield a parser and those of its commands."""
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for command in action.choices.values():
+                yield from parsers(command)
+
+
+def test_every_command_and_option_is_explained_and_the_old_one_is_hidden() -> None:
+    found = list(parsers(_parser()))
+    assert len(found) == 16
+    for parser in found:
+        assert re.fullmatch(r"[A-Z].*\.", parser.description or ""), parser.prog
+        for action in parser._actions:
+            is_a_choice = isinstance(action, argparse._SubParsersAction)
+            assert action.help or is_a_choice, f"{parser.prog}: {action.option_strings or action.dest}"
+        assert "--knob" not in parser.format_help()
 
 
 def test_check_says_what_is_wrong(tmp_path: Path) -> None:

@@ -221,7 +221,7 @@ class RecipePage(Page):
             self._refresh_buttons()
             return
         self._state.asked = values
-        for table, flips in ((self.released, found.released), (self.rejected, found.refused)):
+        for table, flips in ((self.released, found.released), (self.rejected, found.rejected)):
             rows = [
                 (
                     str(flip.inspection_id),
@@ -236,7 +236,7 @@ class RecipePage(Page):
             table.fill(rows)
         self.message.setText(
             translate("recipe", "{n} parts: {released} would be released, {rejected} rejected").format(
-                n=found.looked_at, released=len(found.released), rejected=len(found.refused)
+                n=found.compared, released=len(found.released), rejected=len(found.rejected)
             )
         )
         unknown = translate(
@@ -249,7 +249,7 @@ class RecipePage(Page):
             "recipe", "{n} parts were left out: judged by another model or not readable."
         ).format(n=left_out)
         notes = [text for text, count in ((unknown, found.unknown), (others, left_out)) if count]
-        self.problem.setText(none if not found.looked_at else " ".join(notes))
+        self.problem.setText(none if not found.compared else " ".join(notes))
         self._refresh_buttons()
 
     def _save(self) -> None:
