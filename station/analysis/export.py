@@ -200,7 +200,7 @@ def _dataset(
         if record is None or record.inspection.ring is None or not record.inspection.scores:
             continue  # nothing was judged
         if entry.row.frame_state != "kept":
-            yield entry.path, "its picture is no longer kept"
+            yield entry.path, "its frame was deleted"
             continue
         try:
             strip = unwrap(read_image(folder / str(record.frame_file)), record.inspection.ring)

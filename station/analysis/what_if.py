@@ -57,13 +57,13 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
         inspection = record.inspection
         if record.purpose is not Purpose.PART:
             continue
-        poor = inspection.quality is not None and gate(inspection.quality, quality) is not None
+        fails_gate = inspection.quality is not None and gate(inspection.quality, quality) is not None
         if not inspection.scores:
-            unknown += inspection.reason in QUALITY and not poor
+            unknown += inspection.reason in QUALITY and not fails_gate
             continue
         compared += 1
         bad = any(rejected_kinds(inspection.scores, inspection.findings, thresholds))
-        after = Verdict.ERROR if poor else Verdict.NOK if bad else Verdict.OK
+        after = Verdict.ERROR if fails_gate else Verdict.NOK if bad else Verdict.OK
         if (after is Verdict.OK) == (record.verdict is Verdict.OK):
             continue
         worst = max(range(len(inspection.scores)), key=lambda i: inspection.scores[i].nok)

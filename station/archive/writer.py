@@ -25,7 +25,7 @@ TRIAL_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class StoredFrame:
     """A frame on disk, under a temporary name until its record is written."""
 
     sha256: str
@@ -38,7 +38,7 @@ class Pending:
     """A frame that is written to disk while it is judged."""
 
     frame: Frame | None
-    picture: "Future[Picture] | None"
+    stored: "Future[StoredFrame] | None"
 
 
 class Archive:
@@ -129,14 +129,14 @@ class Archive:
         """Start to write a frame while it is being judged; without `commit`, the next frame overwrites it."""
         return Pending(frame, None if frame is None else self._encoder.submit(self._store, frame))
 
-    def _store(self, frame: Frame) -> Picture:
+    def _store(self, frame: Frame) -> StoredFrame:
         png = encode_png(frame.image)
         sha256 = hashlib.sha256(png).hexdigest()
         if self.room() is Room.FULL:
-            return Picture(sha256, None)
+            return StoredFrame(sha256, None)
         path = self._folder / INCOMING
         write_whole(path, png, durable=True)
-        return Picture(sha256, path)
+        return StoredFrame(sha256, path)
 
     def commit(
         self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, *, now: datetime
@@ -174,12 +174,12 @@ class Archive:
             (day / f"{inspection_id:08d}.{suffix}").unlink(missing_ok=True)
         frame_file = sha256 = None
         state = "none" if pending.frame is None else "kept"
-        if pending.picture is not None:
-            picture = pending.picture.result()
-            sha256 = picture.sha256
-            if picture.path is not None and (self.room() > Room.THIN or inspection.verdict is not Verdict.OK):
+        if pending.stored is not None:
+            stored = pending.stored.result()
+            sha256 = stored.sha256
+            if stored.path is not None and (self.room() > Room.THIN or inspection.verdict is not Verdict.OK):
                 frame_file = f"{day.name}/{inspection_id:08d}.png"
-                picture.path.replace(self._folder / frame_file)
+                stored.path.replace(self._folder / frame_file)
             else:
                 state = "thinned"
         record = Record(

@@ -71,9 +71,9 @@ class Inspector:
         strip = unwrap(image, ring)
         quality = measure(strip)
         unwrap_ms, start = _ms(start), perf_counter()
-        poor = gate(quality, self._quality)
-        if poor is not None:
-            return Inspection.error(poor, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
+        unfit = gate(quality, self._quality)
+        if unfit is not None:
+            return Inspection.error(unfit, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
         try:
             crops = segments(strip)
             judged = self.classifier(crops)

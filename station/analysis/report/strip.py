@@ -42,12 +42,12 @@ class Gallery:
     welds: tuple[Weld, ...]
 
 
-def strip(picture: Path | None, ring: Ring | None, spans_deg: Iterable[tuple[float, float]]) -> StripImage:
+def strip(path: Path | None, ring: Ring | None, spans_deg: Iterable[tuple[float, float]]) -> StripImage:
     """Return the unwrapped weld with marks at `spans_deg`, pairs of start and end; they may exceed 360."""
-    if picture is None or ring is None:
+    if path is None or ring is None:
         return StripImage(missing="no image")
     try:
-        image = cv2.cvtColor(unwrap(read_image(picture), ring), cv2.COLOR_GRAY2BGR)
+        image = cv2.cvtColor(unwrap(read_image(path), ring), cv2.COLOR_GRAY2BGR)
     except (ImageError, LocateError):
         return StripImage(missing="the image was deleted or cannot be read")
     for start, end in spans_deg:
