@@ -1,4 +1,4 @@
-"""Guards: emulated camera, offscreen window, single threads before any import; nothing left running."""
+"""Guards: emulated camera, offscreen window, single threads, and nothing left running after a test."""
 
 import os
 

@@ -73,8 +73,10 @@ def test_importing_touches_no_device_thread_or_variant() -> None:
 
 
 def test_the_station_alone_needs_neither_renderer_nor_torch() -> None:
-    code = "import sys, station.engine.startup, station.cli.replay\n"
-    code += "assert not {'torch', 'mitsuba', 'synth', 'models'} & set(sys.modules)\n"
+    code = (
+        "import sys, station.engine.startup, station.cli.replay\n"
+        "assert not {'torch', 'mitsuba', 'synth', 'models'} & set(sys.modules)\n"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=600, check=False
     )

@@ -33,7 +33,7 @@ MODES = ("server", "client")
 """Modbus roles of the station."""
 WINDOW_S = 1.5
 """Time for which the PLC waits for a result."""
-KNOB_SHARE = 0.012
+FAULT_FRACTION = 0.012
 """Fraction of the parts with which each fault is injected."""
 LATE_FRACTION, ERROR_FRACTION, OK_FRACTION = 0.005, 0.02, 0.6
 """Fractions of late results, of errors, and of errors and OK together."""
@@ -59,7 +59,7 @@ class Report:
     """Number of accepted parts whose result belongs to another part or to none."""
     lost: int = 0
     """Number of undisturbed parts that did not get their verdict."""
-    knobs: Counter[str] = field(default_factory=Counter)
+    faults: Counter[str] = field(default_factory=Counter)
     """Number of injections of each fault."""
     refused_by: Counter[str] = field(default_factory=Counter)
     """Number of parts that were not accepted, by the condition that was not met."""
@@ -139,21 +139,27 @@ async def _drive(
     await plc.connect(10.0)
     try:
         for number in track(range(parts), description=mode, transient=True, disable=not progress):
-            knobs = frozenset(knob for knob in Fault if rng.random() < KNOB_SHARE)
+            faults = frozenset(fault for fault in Fault if rng.random() < FAULT_FRACTION)
             serial = f"P{number:07d}"
-            answer = await plc.inspect(serial, WINDOW_S * SLACK, faults=knobs)
-            calm = 0 if knobs or serial in truths.late else calm + 1
-            _note(report, answer, serial, knobs=knobs, truths=truths, undisturbed=calm > SETTLED)
+            answer = await plc.inspect(serial, WINDOW_S * SLACK, faults=faults)
+            calm = 0 if faults or serial in truths.late else calm + 1
+            _note(report, answer, serial, faults=faults, truths=truths, undisturbed=calm > SETTLED)
     finally:
         await plc.close()
     return report
 
 
 def _note(
-    report: Report, answer: Answer, serial: str, *, knobs: frozenset[Fault], truths: Truths, undisturbed: bool
+    report: Report,
+    answer: Answer,
+    serial: str,
+    *,
+    faults: frozenset[Fault],
+    truths: Truths,
+    undisturbed: bool,
 ) -> None:
     report.parts += 1
-    report.knobs.update(str(knob) for knob in knobs)
+    report.faults.update(str(fault) for fault in faults)
     made = truths.made.get(answer.inspection_id)
     if answer.accepted:
         report.passed += 1
@@ -215,7 +221,7 @@ def print_reports(reports: Sequence[Report], console: Console) -> None:
             [f"{statistics.median(own.valid_ms):.1f}" if own.valid_ms else "-" for own in reports],
         ),
     ]
-    rows += [(f"fault: {fault}", [str(report.knobs[str(fault)]) for report in reports]) for fault in Fault]
+    rows += [(f"fault: {fault}", [str(report.faults[str(fault)]) for report in reports]) for fault in Fault]
     conditions = sorted({name for report in reports for name in report.refused_by})
     rows += [
         (f"refused: {name}", [str(report.refused_by[name]) for report in reports]) for name in conditions

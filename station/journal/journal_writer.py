@@ -12,7 +12,8 @@ from station.journal.journal import COLUMNS, NAME, Entry, Kind, link_entry
 PATIENCE_S = 5.0
 """Time for which other processes are waited for.
 
-SQLite is not fair: of several that write without a pause on a busy machine, one may wait two seconds.
+SQLite is not fair: of several that write without a pause on a busy machine, one may well wait for two
+seconds.
 """
 SCHEMA = (
     """CREATE TABLE IF NOT EXISTS entries (

@@ -1,4 +1,4 @@
-"""Kinds of defect as data: codes that never move, nothing inherited between kinds, old files still read."""
+"""Kinds of defect as data: codes never move, nothing comes from another kind, old files are read."""
 
 import inspect
 import json

@@ -81,8 +81,8 @@ def exchange(folder: Path) -> None:
     path.write_text(path.read_text().replace('"serial": "P4"', '"serial": "PX"'))
     rewrite(
         folder,
-        f"UPDATE records SET record_sha256 = '{hashlib.sha256(path.read_bytes()).hexdigest()}'"
-        " WHERE inspection_id = 5",
+        f"UPDATE records SET record_sha256 = '{hashlib.sha256(path.read_bytes()).hexdigest()}' "
+        "WHERE inspection_id = 5",
     )
 
 

@@ -127,8 +127,10 @@ def test_an_archive_on_a_disk_mounted_read_only_can_be_listed_and_verified(tmp_p
         now=datetime.now(UTC),
     )
     archive.close()
-    mount = f"mount --bind '{folder}' '{folder}' && mount -o remount,ro,bind '{folder}'"
-    mount += f" && ! touch '{folder}/x' 2>/dev/null"
+    mount = (
+        f"mount --bind '{folder}' '{folder}' && mount -o remount,ro,bind '{folder}' "
+        f"&& ! touch '{folder}/x' 2>/dev/null"
+    )
     look = " && ".join(
         f"'{sys.executable}' -m station records {name} '{folder}'" for name in ("list", "verify")
     )

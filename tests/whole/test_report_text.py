@@ -1,4 +1,4 @@
-"""Text in the three reports: what a serial, file name or title holds is shown and never becomes markup."""
+"""Text in the three reports: the content of serials, file names and titles never becomes markup."""
 
 import json
 import re

@@ -162,8 +162,8 @@ def test_a_foreign_package_that_is_loaded_already_is_refused_in_one_line(
     done = run([installed / "weldgate", "--version"], hostile, PYTHONPATH=str(hostile))
     assert done.returncode == 2
     assert done.stderr.splitlines() == [
-        f"weldgate: another package named models is already loaded: {hostile / 'models' / '__init__.py'}."
-        " Start weldgate without it."
+        f"weldgate: another package named models is already loaded: {hostile / 'models' / '__init__.py'}. "
+        "Start weldgate without it."
     ]
 
 
