@@ -51,17 +51,20 @@ class Report:
         return float(np.percentile(self.valid_ms, 99))
 
 
-def run(folder: Path, blocks: int, parts: int) -> dict[str, Report]:
+def run(folder: Path, blocks: int, parts: int, *, deadline_ms: int = 2000) -> dict[str, Report]:
     """Return the reports of `blocks` blocks of each way with `parts` parts each. Raises WeldgateError."""
     feed, ports = Feed(folder / "feed"), free_ports(4)
     settings = folder / "station.toml"
-    settings.write_text(station_toml(folder / "records", *ports))
+    settings.write_text(station_toml(folder / "records", *ports, deadline_ms=deadline_ms))
     command = [sys.executable, "-m", "station", "engine", "-c", str(settings)]
     with (folder / "engine.log").open("w") as log, running(command, {**os.environ, **feed.environment}, log):
-        return asyncio.run(_drive(feed, ports[0], settings, blocks=blocks, parts=parts))
+        window_s = deadline_ms / 1000 + 2
+        return asyncio.run(_drive(feed, ports[0], settings, blocks=blocks, parts=parts, window_s=window_s))
 
 
-async def _drive(feed: Feed, port: int, settings: Path, *, blocks: int, parts: int) -> dict[str, Report]:
+async def _drive(
+    feed: Feed, port: int, settings: Path, *, blocks: int, parts: int, window_s: float
+) -> dict[str, Report]:
     line = SimulatedLine.at("127.0.0.1", port, accept_simulated=True)
     reports = {way: Report() for way in WAYS}
     images = [read_image(part.path) for part in shipped_parts()]
@@ -80,7 +83,7 @@ async def _drive(feed: Feed, port: int, settings: Path, *, blocks: int, parts: i
                         window.wait()
                         window = _open(settings)
                     feed.show(images[number % len(images)])
-                    answer = await line.inspect(f"{block}-{WAYS.index(way)}-{number}")
+                    answer = await line.inspect(f"{block}-{WAYS.index(way)}-{number}", window_s)
                     report = reports[way]
                     report.parts += 1
                     report.missed += answer.verdict not in (VerdictCode.OK, VerdictCode.NOK)

@@ -31,6 +31,8 @@ from synth.camera.feed import Feed
 from synth.errors import SynthError
 
 RENDER_PATIENCE_S = 120.0
+DEADLINE_MS = 8000
+"""Time for a part: the demo is to judge on any machine, not to be fast."""
 """Maximum time to wait for one rendered part."""
 
 
@@ -93,7 +95,7 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
         feed = Feed(folder / "feed", SERIAL)
         ports = free_ports(4)
         settings = folder / "station.toml"
-        settings.write_text(station_toml(records, *ports))
+        settings.write_text(station_toml(records, *ports, deadline_ms=DEADLINE_MS))
         log = stack.enter_context((folder / "engine.log").open("w"))
         fresh = max(0, arguments.parts - len(shipped_parts()))
         renderer = stack.enter_context(_renderer(folder / "fresh", fresh, arguments.seed)) if fresh else None
@@ -209,7 +211,7 @@ async def _drive(
                 up = True
             if engine.poll() is not None:
                 raise WeldgateError(f"the engine stopped: {_last_line(log)}")
-            judged.append(Judged(part, await line.inspect(part.name)))
+            judged.append(Judged(part, await line.inspect(part.name, DEADLINE_MS / 1000 + 2)))
             print_part(judged, console)
             await line.meanwhile(asyncio.sleep(pace_s))
     finally:

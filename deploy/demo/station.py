@@ -24,10 +24,10 @@ def shipped_parts() -> list[DemoPart]:
     ]
 
 
-def station_toml(records: Path, *ports: int) -> str:
+def station_toml(records: Path, *ports: int, deadline_ms: int = 2000) -> str:
     """Return the settings of a station with the emulated camera and the shipped networks.
 
-    `ports` are those of PLC, events, preview and requests.
+    `ports` are those of PLC, events, preview and requests. A busy machine needs a longer deadline.
     """
     plc_port, events_port, preview_port, requests_port = ports
     good = next(part.path for part in shipped_parts() if part.truth == "OK")
@@ -36,6 +36,7 @@ def station_toml(records: Path, *ports: int) -> str:
 kind = "pylon"
 device_class = "BaslerCamEmu"
 serial = "{SERIAL}"
+timeout_ms = {deadline_ms // 4}
 [model]
 path = {json.dumps(str(SHIPPED_NETWORKS / "weldgate.onnx"))}
 ring_path = {json.dumps(str(SHIPPED_NETWORKS / "ring.onnx"))}
@@ -43,7 +44,7 @@ self_test_path = {json.dumps(str(good))}
 self_test_verdict = "OK"
 [plc]
 port = {plc_port}
-deadline_ms = 3500  # for slow or busy machines; the line waits 4 s
+deadline_ms = {deadline_ms}
 [archive]
 folder = {json.dumps(str(records))}
 [channel]

@@ -56,7 +56,7 @@ class Line:
         await line.connect()
         for number in range(count):
             self._feed.show(read_image(parts[number % len(parts)].path))
-            self.answers.append(await line.inspect(f"CELL-{number}"))
+            self.answers.append(await line.inspect(f"CELL-{number}", 22.0))
         await line.close()
 
 
@@ -65,7 +65,9 @@ def station(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[tuple[Pa
     """A parameter: more lines of the settings file."""
     feed, ports = Feed(tmp_path / "feed"), free_ports(4)
     path = tmp_path / "station.toml"
-    path.write_text(station_toml(tmp_path / "records", *ports) + getattr(request, "param", ""))
+    path.write_text(
+        station_toml(tmp_path / "records", *ports, deadline_ms=20_000) + getattr(request, "param", "")
+    )
     with (
         (tmp_path / "engine.log").open("w") as log,
         running(

@@ -68,7 +68,7 @@ class Running:
 
     def until(self, said: Callable[[StatusEvent], bool], again: Order | None = None) -> StatusEvent:
         """Return the first status that meets a condition; repeat an order until then."""
-        end, start = time.monotonic() + 20, len(self.events)
+        end, start = time.monotonic() + 200, len(self.events)
         while time.monotonic() < end:
             for event in self.events[start:]:
                 if isinstance(event, StatusEvent) and said(event):
@@ -86,7 +86,7 @@ class Running:
             await line.connect()
             self.feed.show(image)
             try:
-                return await line.inspect(serial, golden=golden)
+                return await line.inspect(serial, 12.0, golden=golden)
             finally:
                 await line.close()
 
@@ -112,6 +112,7 @@ kind = "pylon"
 device_class = "BaslerCamEmu"
 serial = "0815-0000"
 reconnect_s = 0.1
+timeout_ms = 4000
 [model]
 path = "{MODEL}"
 ring_path = "{RING_MODEL}"
@@ -122,7 +123,7 @@ thin_free_mb = 1
 warn_free_mb = 1
 [plc]
 port = {free_ports(1)[0]}
-deadline_ms = 5000
+deadline_ms = 8000
 plc_heartbeat_ms = 0
 [golden]
 due_h = 24
@@ -159,7 +160,7 @@ def test_service_mode_holds_ready_at_0_tells_the_plc_and_ends_with_its_lease(
         running.ask(replace(service, bit=0))
         await line.meanwhile(asyncio.sleep(0.6))
         without = dict(line.status())
-        ready = await line.wait_ready(10.0)  # nobody renews the lease
+        ready = await line.wait_ready(100.0)  # nobody renews the lease
         await line.close()
         return during, without, ready
 
@@ -338,7 +339,7 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
 ) -> None:
     def heard(serial: str) -> PartEvent:
         """Return the event of a part; it comes after the result for the PLC."""
-        end = time.monotonic() + 10
+        end = time.monotonic() + 100
         while time.monotonic() < end:
             for event in running.events:
                 if isinstance(event, PartEvent) and event.record.serial == serial:

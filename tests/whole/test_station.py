@@ -37,6 +37,8 @@ from synth.camera.feed import Feed
 from tests.conftest import MODEL, RING_MODEL
 from tests.parts import label_with, labels
 
+WINDOW_S = 60.0
+"""Time in which the PLC waits: of no meaning here, and long enough for a machine that is busy."""
 Judge = Callable[[SimulatedLine], "asyncio.Future[None]"]
 
 
@@ -60,7 +62,7 @@ class Station:
             try:
                 for number, image in enumerate(parts):
                     self.feed.withdraw() if image is None else self.feed.show(image)
-                    answers.append(await line.inspect(f"T{number}"))
+                    answers.append(await line.inspect(f"T{number}", WINDOW_S))
             finally:
                 await line.close()
             return answers
@@ -69,7 +71,7 @@ class Station:
 
     def part_events(self, count: int) -> list[PartEvent]:
         """The first events of parts; each follows the answer to the PLC, so they are waited for."""
-        until = time.monotonic() + 60
+        until = time.monotonic() + WINDOW_S
         while (
             len(found := [e for e in self.events if isinstance(e, PartEvent)]) < count
             and time.monotonic() < until
@@ -102,6 +104,7 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
                 "device_class": "BaslerCamEmu",
                 "serial": "0815-0000",
                 "reconnect_s": 0.1,
+                "timeout_ms": 10_000,
             },
             "model": {"path": MODEL, "ring_path": RING_MODEL, "reference_path": reference},
             "archive": {
@@ -110,7 +113,7 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
                 "thin_free_mb": 1,
                 "warn_free_mb": 1,
             },
-            "plc": {"port": free_ports(1)[0], "deadline_ms": 5000},
+            "plc": {"port": free_ports(1)[0], "deadline_ms": 50_000},
             "golden": {"masters": {"MASTER-OK": "OK", "MASTER-NOK": "NOK"}},
             "recipes": {
                 2: {"model": {"limits": {"hole": {"threshold": 0.0001}}}},
@@ -196,17 +199,17 @@ def test_a_recipe_is_changed_by_command_and_a_broken_one_leaves_the_old_in_use(
         line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
         await line.connect()
         station.feed.show(good)
-        seen: list[object] = [(await line.inspect("ONE")).verdict]
+        seen: list[object] = [(await line.inspect("ONE", WINDOW_S)).verdict]
         crc = line.status()["CONFIG_CRC"]
         seen.append(await line.command(CommandCode.LOAD_RECIPE, 2))
-        assert await line.wait_ready(5.0)
+        assert await line.wait_ready(WINDOW_S)
         seen += [line.status()["ACTIVE_RECIPE"], line.status()["CONFIG_CRC"] != crc]
-        answer = await line.inspect("TWO")
+        answer = await line.inspect("TWO", WINDOW_S)
         seen += [answer.verdict, answer.refused_by]
         seen += [await line.command(CommandCode.LOAD_RECIPE, number) for number in (3, 9)]
-        assert await line.wait_ready(5.0)
+        assert await line.wait_ready(WINDOW_S)
         seen += [line.status()["ACTIVE_RECIPE"], await line.command(CommandCode.LOAD_RECIPE, 1)]
-        seen.append((await line.inspect("THREE")).accepted)
+        seen.append((await line.inspect("THREE", WINDOW_S)).accepted)
         await line.close()
         return seen
 
@@ -233,7 +236,7 @@ def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(
     async def look() -> dict[str, object]:
         line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
         await line.connect()
-        await line.wait_ready(5.0)
+        await line.wait_ready(WINDOW_S)
         await line.close()
         return dict(line.status())
 
@@ -263,7 +266,7 @@ def test_a_master_never_passes_and_one_judged_wrongly_blocks_until_it_is_right(
             ("PART-3", good, False),
         ):
             station.feed.show(image)
-            answer = await line.inspect(serial, golden=golden)
+            answer = await line.inspect(serial, WINDOW_S, golden=golden)
             seen.append((answer.verdict, answer.refused_by))
         await line.close()
         return seen
@@ -389,7 +392,7 @@ def test_a_camera_that_is_absent_at_start_is_said_and_found_later(
         line = SimulatedLine.at("127.0.0.1", station.port, accept_simulated=True)
         await line.connect()
         try:
-            return await line.inspect("back", window_s=10.0)
+            return await line.inspect("back", WINDOW_S)
         finally:
             await line.close()
 
