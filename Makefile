@@ -29,7 +29,7 @@ bench: $(VENV)/.dev ## measure the times of the station, the PLC link, records, 
 	$(BIN)/python -m deploy.bench.plc
 	$(BIN)/python -m deploy.bench.records
 	$(BIN)/python -m deploy.bench.render
-	$(BIN)/python -m models.bench
+	$(BIN)/python -m deploy.bench.classifier
 
 chaos-plc: $(VENV)/.demo ## pass 10,000 parts in each PLC mode while both sides misbehave
 	$(BIN)/python -m deploy.chaos.plc

@@ -1,7 +1,7 @@
-"""Compares the times of a classifier and the paper's network: `python -m models.bench [FILE ...]`."""
+"""Compares the times of the shipped classifier and of the paper's network on the 21 crops of a part."""
 
+import argparse
 import statistics
-import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -15,8 +15,9 @@ from models.classifier.export import write_onnx
 from models.paper.network import PaperNet
 from station.classify.onnx import Classifier, Network
 from station.domain import SEGMENT_PX, SEGMENTS
+from station.files.installation import SHIPPED_NETWORKS
 
-SHIPPED = Path(__file__).resolve().parent / "shipped" / "weldgate.onnx"
+SHIPPED = SHIPPED_NETWORKS / "weldgate.onnx"
 ROUNDS = 200
 THREADS = 2
 
@@ -36,6 +37,11 @@ class _Plain(nn.Module):
 
 def main() -> None:
     """Measure in turns and print medians and ratios."""
+    parser = argparse.ArgumentParser(prog="python -m deploy.bench.classifier", description=__doc__)
+    parser.add_argument(
+        "networks", nargs="*", type=Path, default=[SHIPPED], metavar="FILE", help="a network in ONNX format"
+    )
+    args = parser.parse_args()
     crops = np.random.default_rng(0).integers(0, 256, (SEGMENTS, SEGMENT_PX, SEGMENT_PX), dtype=np.uint8)
     runs: dict[str, Callable[[], object]] = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -51,7 +57,7 @@ def main() -> None:
         paper = Network(path, THREADS)
         whole = images.numpy()
         runs["the paper's network, 1.6 M weights"] = lambda: paper.run(("logits",), {"images": whole})
-        for file in [Path(name) for name in sys.argv[1:]] or [SHIPPED]:
+        for file in args.networks:
             classifier = Classifier(file, THREADS)
             runs[f"{file}, maps included"] = lambda own=classifier: own(crops)  # type: ignore[misc]
         times: dict[str, list[float]] = {name: [] for name in runs}
