@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from station.plc.wire.peers import MAX_PEERS
 
 from station.errors import LineError
 from station.plc.wire.access import WriteRight, admitted
 from station.plc.wire.modbus import ModbusClient, ModbusServer
+from station.plc.wire.peers import MAX_PEERS
 
 ALLOW = (ip_network("192.168.7.0/24"), ip_network("10.0.0.5"), ip_network("fd00::/8"))
 

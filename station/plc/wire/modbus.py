@@ -28,8 +28,8 @@ from station import __version__
 from station.errors import LineError
 from station.plc.wire.access import Network
 from station.plc.wire.framing import CLIENT_WRITES, FUNCTIONS, frames, refusal, writes_within
-from station.plc.wire.tls import Tls
 from station.plc.wire.peers import HANDSHAKE_S, MAX_WAITING, Peers
+from station.plc.wire.tls import Tls
 
 logging.getLogger("pymodbus").setLevel(logging.CRITICAL)
 
