@@ -75,13 +75,13 @@ def test_a_second_writer_is_refused_until_the_first_is_gone_or_silent() -> None:
         await asyncio.sleep(0.05)
         await two.write(0, [3])
         await one.connect()
-        await asyncio.sleep(0.25)
+        await asyncio.sleep(1.1)
         await one.write(0, [4])
         assert await server.read(0, 1) == [4]
         one.close()
         two.close()
 
-    serve(conversation, writer_idle_s=0.2)
+    serve(conversation, writer_idle_s=1.0)
 
 
 def test_a_peer_that_is_not_on_the_list_is_turned_away() -> None:

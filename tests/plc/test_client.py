@@ -126,15 +126,15 @@ class LateStart:
 
 def test_a_mute_plc_is_told_and_nothing_blocks(ports: int, caplog: pytest.LogCaptureFixture) -> None:
     with socket.create_server(("127.0.0.1", ports)):
-        line = make_line(PlcSettings(mode="client", port=ports, timeout_ms=100, plc_heartbeat_ms=300))
+        line = make_line(PlcSettings(mode="client", port=ports, timeout_ms=2000, plc_heartbeat_ms=300))
         line.start()
         try:
-            until = time.monotonic() + 10
+            until = time.monotonic() + 100
             while line.state().offline is not Offline.PLC_SILENT and time.monotonic() < until:
                 start = time.monotonic()
                 line.check_in(WELL)
                 assert line.next_request(0.01) is None
-                assert time.monotonic() - start < 0.1
+                assert time.monotonic() - start < 1.0, "half of the time for which an answer is waited for"
             assert line.state().offline is Offline.PLC_SILENT
         finally:
             line.stop()
@@ -148,9 +148,9 @@ def test_a_plc_that_is_not_there_is_waited_for(ports: int) -> None:
     async def conversation() -> Answer:
         await asyncio.sleep(0.7)
         plc = SimulatedLine(OwnWindows("127.0.0.1", ports), accept_simulated=False)
-        await plc.connect(5)
+        await plc.connect(50)
         try:
-            return await plc.inspect("LATE", 4.0)
+            return await plc.inspect("LATE", 20.0)
         finally:
             await plc.close()
 
@@ -168,19 +168,27 @@ def test_a_wrong_base_address_is_said_with_its_register(ports: int, caplog: pyte
         )
     )
 
+    def said() -> bool:
+        return "4000 refused" in caplog.text
+
+    def silent() -> bool:
+        return line.state().offline is Offline.PLC_SILENT
+
     async def conversation() -> int:
         windows = OwnWindows("127.0.0.1", ports)
         await windows.connect()
         line.start()
-        await asyncio.sleep(1.2)
+        until = time.monotonic() + 100
+        while not (said() and silent()) and time.monotonic() < until:
+            await asyncio.sleep(0.02)
         words = await windows.read(STATUS_START, STATUS_WORDS)
         await asyncio.to_thread(line.stop)
         await windows.close()
         return sum(words)
 
     assert asyncio.run(conversation()) == 0
-    assert "4000 refused" in caplog.text
-    assert line.state().offline is Offline.PLC_SILENT
+    assert said()
+    assert silent()
 
 
 def test_windows_that_overlap_are_refused() -> None:
