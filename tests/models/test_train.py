@@ -12,7 +12,7 @@ from models.classifier.network import WeldNet
 from models.classifier.plan import Plan
 from models.classifier.quantize import quantize
 from models.classifier.train import train
-from models.data.crops import DEFECTS
+from models.data.crops import DEFECTS, OK
 from models.data.rendered import read_rendered
 from models.errors import LearningError
 from models.evaluation.detection import boxes, evaluate_boxes
@@ -129,6 +129,7 @@ def test_a_plan_that_does_not_fit_the_crops_is_refused() -> None:
 
 def test_boxes_lie_on_the_defects(run: Path, data: Path) -> None:
     held = read_rendered([data])[1]
+    held = held.pick(np.isin(held.labels, (OK, HOLE, MISSING)))
     found = evaluate_boxes([data], held, Classifier(run / "weldgate.onnx"), (HOLE, MISSING))
     assert found.map50 > 0.8
     assert found.as_decision.recall > 0.9
