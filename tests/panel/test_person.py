@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from deploy.demo.ports import free_ports
 from deploy.demo.station import running, shipped_parts, station_toml
-from station.defects import Reason
+from station.defects import KINDS
 from station.files.image import read_image
 from station.journal.accounts import save_user
 from station.journal.journal import Kind, entries
@@ -363,7 +363,9 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
         qtbot.mouseClick(page.record.strip, LEFT, pos=QPoint(page.record.strip.width() // 2, 20))
     qtbot.mouseClick(missed, LEFT)
     qtbot.waitUntil(lambda: not page.waiting, timeout=5000)
-    assert reviews(window.session.received.folder)[ok].marks == {"Ada": {11: Reason.MISSING_WELD}}
+    assert reviews(window.session.received.folder)[ok].marks == {"Ada": {11: KINDS[1].reason}}, (
+        "each click marks the next kind"
+    )
     assert not missed.isEnabled(), "the marks are hers, not those of the next"
     fields.since.setCurrentText("from … to …")
     assert fields.begin.isVisible()
