@@ -92,7 +92,7 @@ class Desk:
     def close(self) -> None:
         self.requests.close()
         self._stop.set()
-        self._thread.join(timeout=10)
+        self._thread.join(timeout=100)
         self._server.close()
 
 

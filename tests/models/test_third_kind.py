@@ -13,5 +13,5 @@ from tests.conftest import ROOT
 @pytest.mark.parametrize(("place", "mapped"), [(0, "mapped"), (1, "mapped"), (2, "unmapped")])
 def test_the_learning_room_takes_a_third_kind(place: int, mapped: str, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.models.third_kind", str(place), mapped, str(tmp_path)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=590, check=False)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 0, done.stderr[-3000:]

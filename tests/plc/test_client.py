@@ -41,7 +41,7 @@ class Proxy:
     def close(self) -> None:
         self._listener.shutdown(socket.SHUT_RDWR)
         self._listener.close()
-        self._thread.join(timeout=5)
+        self._thread.join(timeout=100)
 
     def _accept(self) -> None:
         with suppress(OSError):

@@ -65,7 +65,7 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
     mode = "server" if "server" in request.param else "client"
     swapped = "low" in request.param
     settings = PlcSettings(
-        mode=mode, port=free_ports(1)[0], poll_ms=5, timeout_ms=200, deadline_ms=600, low_word_first=swapped
+        mode=mode, port=free_ports(1)[0], poll_ms=5, timeout_ms=800, deadline_ms=1500, low_word_first=swapped
     )
     bus = BusLog(tmp_path, days=1)
     line = make_line(settings, bus)
@@ -100,7 +100,7 @@ class Judging:
 
     def end(self) -> None:
         self._stop.set()
-        self._thread.join(timeout=10)
+        self._thread.join(timeout=100)
 
     def _run(self) -> None:
         while not self._stop.is_set():
@@ -171,7 +171,7 @@ def test_nok_error_and_late_results_are_refused_and_the_next_part_goes_on(rig: R
         with Judging(rig.line, verdict):
             answer = rig.plc(conversation)
         assert (answer.accepted, answer.verdict) == (False, verdict)
-    with Judging(rig.line, VerdictCode.OK, delay_s=0.8) as judging:
+    with Judging(rig.line, VerdictCode.OK, delay_s=1.7) as judging:
         answer = rig.plc(conversation)
         time.sleep(0.5)
     assert (answer.accepted, answer.verdict) == (False, VerdictCode.ERROR)

@@ -74,7 +74,7 @@ def status_window(peer: socket.socket) -> list[int]:
 def ask(port: int, seed: int, requests: int) -> int:
     """Send requests in batches on one connection; how many were answered."""
     rng, answered = random.Random(seed), 0
-    with socket.create_connection(("127.0.0.1", port), timeout=5) as peer:
+    with socket.create_connection(("127.0.0.1", port), timeout=20) as peer:
         stream = peer.makefile("rb")
         for _ in range(requests // BATCH):
             peer.sendall(b"".join(request(rng) for _ in range(BATCH)))
@@ -89,7 +89,7 @@ def ask(port: int, seed: int, requests: int) -> int:
 def shout(port: int, seed: int, times: int) -> None:
     rng = random.Random(seed)
     for _ in range(times):
-        with socket.create_connection(("127.0.0.1", port), timeout=5) as peer:
+        with socket.create_connection(("127.0.0.1", port), timeout=20) as peer:
             peer.sendall(noise(rng))
 
 
@@ -103,7 +103,7 @@ def test_a_hundred_thousand_frames_of_noise_change_nothing(line: ModbusLine) -> 
     for thread in shouting:
         thread.start()
     seen = 0
-    with socket.create_connection(("127.0.0.1", line.port), timeout=5) as plc:
+    with socket.create_connection(("127.0.0.1", line.port), timeout=20) as plc:
         while any(thread.is_alive() for thread in shouting):
             words = status_window(plc)
             assert words[5:7] == [0, 0xFFFF]
@@ -122,11 +122,11 @@ def test_a_hundred_thousand_frames_of_noise_change_nothing(line: ModbusLine) -> 
 def test_a_peer_that_speaks_no_modbus_is_told_in_the_log(
     line: ModbusLine, caplog: pytest.LogCaptureFixture
 ) -> None:
-    with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
+    with socket.create_connection(("127.0.0.1", line.port), timeout=20) as peer:
         peer.sendall(b"GET / HTTP/1.0\r\n\r\n")
         assert peer.recv(10) == b""
     assert "does not speak Modbus" in caplog.text
-    with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
+    with socket.create_connection(("127.0.0.1", line.port), timeout=20) as peer:
         peer.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 3, 100, 1) * 200)
         while peer.recv(4096):
             pass

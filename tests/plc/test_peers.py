@@ -21,7 +21,7 @@ def mbpoll(line: ModbusLine, *arguments: str) -> tuple[int, str]:
         ["mbpoll", "-1", "-p", str(line.port), *arguments],
         capture_output=True,
         text=True,
-        timeout=20,
+        timeout=200,
         check=False,
         stdin=subprocess.DEVNULL,
     )

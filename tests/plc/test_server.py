@@ -20,7 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:pymodbus")
 
 def talk(line: ModbusLine, conversation: object) -> object:
     async def run() -> object:
-        client = AsyncModbusTcpClient("127.0.0.1", port=line.port, timeout=2, retries=0)
+        client = AsyncModbusTcpClient("127.0.0.1", port=line.port, timeout=20, retries=0)
         assert await client.connect()
         try:
             return await conversation(client)  # type: ignore[operator]
@@ -122,7 +122,7 @@ def test_noise_on_the_wire_changes_nothing(line: ModbusLine) -> None:
         b"GET / HTTP/1.0\r\n\r\n",
         b"\x00\x01\x00\x00\xff\xff\x01\x10" + b"\xff" * 250,
     ):
-        with socket.create_connection(("127.0.0.1", line.port), timeout=2) as peer:
+        with socket.create_connection(("127.0.0.1", line.port), timeout=20) as peer:
             peer.sendall(junk)
     time.sleep(0.1)
 

@@ -50,7 +50,7 @@ def test_a_lock_held_by_another_process_is_refused_at_once(tmp_path: Path) -> No
         with pytest.raises(BlockingIOError, match="held by another process"):
             hold(path)
         assert time.monotonic() - begin < 1.0
-        process.communicate("", timeout=20)
+        process.communicate("", timeout=200)
         hold(path).release()
 
 
@@ -58,7 +58,7 @@ def test_a_killed_holder_leaves_a_file_and_no_lock(tmp_path: Path) -> None:
     path = tmp_path / "x.lock"
     with held_elsewhere(path) as process:
         process.send_signal(signal.SIGKILL)
-        process.wait(timeout=20)
+        process.wait(timeout=200)
     assert path.exists()
     hold(path).release()
 

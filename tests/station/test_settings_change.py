@@ -66,7 +66,7 @@ class Engine:
 
     def close(self) -> None:
         self.stop.set()
-        self._thread.join(timeout=10)
+        self._thread.join(timeout=100)
 
     def noted(self) -> list[tuple[str, str, str, str]]:
         found = entries(self.path.parent / "records", (Kind.SETTING,), newest_first=False)

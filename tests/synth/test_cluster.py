@@ -34,7 +34,7 @@ def test_same_bytes_from_a_cluster(tmp_path: Path, model: WeldModel) -> None:
         env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
         capture_output=True,
         text=True,
-        timeout=110,
+        timeout=600,
         check=False,
     )
     assert done.returncode == 0, done.stderr
@@ -57,7 +57,7 @@ def test_no_scheduler_there_is_said(tmp_path: Path) -> None:
         "--scheduler",
         "tcp://127.0.0.1:1",
     ]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 2
     assert "--scheduler tcp://127.0.0.1:1: no Dask scheduler answers there" in done.stderr
     assert "Traceback" not in done.stderr

@@ -74,7 +74,7 @@ def test_a_new_kind_is_planned_rendered_labelled_and_shown(tmp_path: Path) -> No
         cwd=ROOT,
         capture_output=True,
         text=True,
-        timeout=110,
+        timeout=600,
         check=False,
     )
     assert done.returncode == 0, done.stderr

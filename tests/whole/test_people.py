@@ -94,7 +94,7 @@ class Running:
 
     def close(self) -> None:
         self._stop.set()
-        self._thread.join(timeout=10)
+        self._thread.join(timeout=100)
         self._line.stop()
         self._alarm_log.close()
         self._archive.close()

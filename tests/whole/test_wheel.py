@@ -32,7 +32,7 @@ def run(
         env={**clean, **environment},
         capture_output=True,
         text=True,
-        timeout=100,
+        timeout=600,
         check=False,
     )
 
