@@ -67,7 +67,7 @@ def test_the_network_comes_back_from_its_file(tmp_path: Path) -> None:
 
 
 def test_only_a_classifier_can_be_trained_further() -> None:
-    with pytest.raises(Exception, match=r"ring\.onnx: not a weldgate model"):
+    with pytest.raises(Exception, match=r"ring\.onnx: not a weldgate classifier"):
         read_network(RING_MODEL)
 
 

@@ -310,7 +310,7 @@ def test_a_station_that_judges_its_stored_frame_differently_takes_no_parts(
     assert self_checks.self_test_failed
     assert "self-test failed" in caplog.text
     cv2.imwrite(str(tmp_path / "stored.png"), np.zeros((2160, 4200), np.uint8))
-    with pytest.raises(ModelError, match="must be NOK"):
+    with pytest.raises(ModelError, match="not NOK"):
         prepare(settings.model_copy(update={"model": model}), 1)
 
 
