@@ -1,16 +1,20 @@
 """Prepares a recipe for inspection: loads its networks, sets its limits and runs its self-test."""
 
 import hashlib
+import logging
 import zlib
 from dataclasses import dataclass, replace
 
 from station import __version__
 from station.classify.onnx import Classifier, RingNetwork
 from station.classify.thresholds import Thresholds
+from station.defects import KINDS
 from station.inspection.inspector import Inspector
 from station.inspection.self_test import SelfTest
 from station.records import Provenance
 from station.settings.model import Settings, for_recipe
+
+log = logging.getLogger("weldgate.loading")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +32,12 @@ def prepare(settings: Settings, number: int) -> Loaded:
     chosen = for_recipe(settings, number)
     inspector, provenance = load_inspector(chosen)
     provenance = replace(provenance, recipe=number)
+    if unknown := _not_judged(inspector.thresholds):
+        log.warning(
+            "%s does not know %s: parts with it can read OK; train a network that knows it",
+            chosen.model.path,
+            ", ".join(unknown),
+        )
     path = chosen.model.self_test_path
     return Loaded(
         number,
@@ -62,6 +72,12 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         ).hexdigest(),
     )
     return inspector, provenance
+
+
+def _not_judged(thresholds: Thresholds) -> list[str]:
+    """Return the kinds of defect that the station knows and its classifier does not."""
+    known = [limit.kind for limit in thresholds.kinds]
+    return [str(kind.reason) for kind in KINDS if kind not in known]
 
 
 def _words_of(thresholds: Thresholds) -> list[str]:

@@ -15,10 +15,13 @@ from station.classify.thresholds import Limit, Thresholds, in_use
 from station.defects import KINDS, DefectKind, Reason, Width, kind_named, kind_of
 from station.domain import SEGMENTS, Ring, SegmentScores
 from station.errors import SettingsError
+from station.files.installation import SHIPPED_NETWORKS
+from station.inspection import loading
+from station.inspection.loading import prepare
 from station.plc.map.registers import MAP_VERSION
 from station.records import from_json, to_json
 from station.settings.file import load
-from station.settings.model import LimitSettings
+from station.settings.model import LimitSettings, for_images
 from tests.station.test_settings import GOOD
 
 OLD_RECORDS = Path(__file__).parent / "old_records"
@@ -156,6 +159,18 @@ def test_limits_of_a_kind_that_the_model_does_not_know_are_refused() -> None:
     with pytest.raises(SettingsError, match=r"model\.limits\.dent: .*it knows hole, missing_weld"):
         in_use(of_model, {"dent": LimitSettings(threshold=0.5)}, {})
     assert in_use(of_model, {"hole": LimitSettings(min_mm=0.2)}, {}).of(HOLE) == Limit(HOLE, 0.46, 0.2)
+
+
+def test_a_kind_that_no_network_judges_is_said_at_the_start(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    settings = for_images(SHIPPED_NETWORKS)
+    monkeypatch.setattr(loading, "KINDS", (HOLE, GONE))
+    prepare(settings, 1)
+    assert not caplog.text
+    monkeypatch.setattr(loading, "KINDS", THREE)
+    prepare(settings, 1)
+    assert "weldgate.onnx does not know image blurred: parts with it can read OK" in caplog.text
 
 
 @pytest.mark.parametrize(("version", "rejected"), [(1, (2, 8, 19)), (2, (19,))])
