@@ -151,7 +151,7 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
         record=record,
         novel=False,
         drift=None,
-        told=VerdictCode.NOK,
+        reported=VerdictCode.NOK,
         record_ms=5.0,
         publish_ms=1.0,
     )

@@ -55,7 +55,7 @@ class PartEvent:
     """True if the image is unlike all training images; its verdict is less reliable."""
     drift: Drift | None
     """Drift of the last parts from the line's reference; None: not monitored, or no part was judged yet."""
-    told: VerdictCode
+    reported: VerdictCode
     """Verdict that the PLC reads.
 
     ERROR also if the result came too late, TEST for a master or while the station is not trusted, NONE for a

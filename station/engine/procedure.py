@@ -83,7 +83,7 @@ class Procedure:
                 record=record,
                 novel=False,
                 drift=None,
-                told=VerdictCode.ERROR,
+                reported=VerdictCode.ERROR,
                 record_ms=0.0,
                 publish_ms=0.0,
             )
@@ -107,7 +107,7 @@ class Procedure:
             record=record,
             novel=novel,
             drift=self._self_checks.drift,
-            told=answer.verdict,
+            reported=answer.verdict,
             record_ms=record_ms,
             publish_ms=answer.publish_ms,
         )

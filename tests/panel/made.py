@@ -81,7 +81,7 @@ def part(
         record=made,
         novel=False,
         drift=None,
-        told=told,
+        reported=told,
         record_ms=1.0,
         publish_ms=1.0,
     )

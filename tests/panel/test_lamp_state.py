@@ -30,7 +30,7 @@ GOOD = part(ok_inspection(), at_s=NOW_S)
         (part(ok_inspection(), purpose=Purpose.TEST, at_s=NOW_S), "TEST", "T", Tone.TEST),
         (part(ok_inspection(), purpose=Purpose.GOLDEN, at_s=NOW_S), "TEST", "T", Tone.TEST),
         (part(ok_inspection(), at_s=NOW_S, trusted=False), "TEST", "T", Tone.TEST),
-        (replace(GOOD, told=VerdictCode.ERROR), "ERROR", "!", Tone.WARN),
+        (replace(GOOD, reported=VerdictCode.ERROR), "ERROR", "!", Tone.WARN),
         (None, "NO VERDICT", "–", Tone.QUIET),
     ],
 )
@@ -91,7 +91,7 @@ def test_green_is_a_fresh_ok_that_the_plc_reads(
 ) -> None:
     now_s = 2e6
     event = status(offline, at_s=now_s - status_age_s, started_s=started_s)
-    shown = lamp(event, replace(GOOD, at_s=now_s - part_age_s, told=told), now_s)
+    shown = lamp(event, replace(GOOD, at_s=now_s - part_age_s, reported=told), now_s)
     if shown.tone is Tone.GOOD:
         assert told is VerdictCode.OK
         assert offline is Offline.NONE

@@ -60,7 +60,7 @@ class Line:
 
     working: bool = True
     in_time: bool = True
-    told: LineState = field(default_factory=lambda: make_line(PlcSettings()).state())
+    line_state: LineState = field(default_factory=lambda: make_line(PlcSettings()).state())
     published: list[Result] = field(default_factory=list)
     exposed: list[Trigger] = field(default_factory=list)
 
@@ -77,7 +77,7 @@ class Line:
     def check_in(self, _health: Health) -> None: ...
 
     def state(self) -> LineState:
-        return self.told
+        return self.line_state
 
 
 class Rig:
@@ -152,7 +152,7 @@ def test_all_are_judged_recorded_and_shown_alike_but_only_a_trigger_is_answered(
     assert record.origin is Origin.CAMERA, "of the frame, not of the settings"
     assert any(event.record.inspection.nok)
     assert event.record_ms > 0
-    assert event.told is told
+    assert event.reported is told
     assert [entry.record for entry in read_records(rig.folder)] == [record]
     assert rig.shown == [record.inspection_id]
     assert [result.verdict for result in rig.line.published] == ([told] if by_plc else [])
@@ -162,13 +162,13 @@ def test_all_are_judged_recorded_and_shown_alike_but_only_a_trigger_is_answered(
 
 def test_a_part_whose_trigger_is_over_is_recorded_without_a_grab(rig: Rig) -> None:
     rig.line.working = rig.line.in_time = False
-    rig.line.told = replace(rig.line.told, error_code=ERROR_ABORTED)
+    rig.line.line_state = replace(rig.line.line_state, error_code=ERROR_ABORTED)
     rig.procedure.inspect_part(TRIGGER, rig.loaded)
     record = rig.event.record
     assert (record.verdict, record.inspection.reason) == (Verdict.ERROR, Reason.ABORTED)
     assert record.inspection.timing.grab_ms is None
     assert record.origin is Origin.SIMULATED
-    assert rig.event.told is VerdictCode.ERROR
+    assert rig.event.reported is VerdictCode.ERROR
     assert not rig.camera.adjusted
     assert not rig.line.exposed
     assert not rig.shown
@@ -181,9 +181,9 @@ def test_a_result_that_came_too_late_is_an_alarm_with_the_code_that_the_plc_read
     passed: list[int] = []
     monkeypatch.setattr(AlarmLog, "add_event", lambda _self, code, _what: passed.append(code))
     rig.line.in_time = False
-    rig.line.told = replace(rig.line.told, error_code=said)
+    rig.line.line_state = replace(rig.line.line_state, error_code=said)
     rig.procedure.inspect_part(TRIGGER, rig.loaded)
-    assert rig.event.told is VerdictCode.ERROR
+    assert rig.event.reported is VerdictCode.ERROR
     assert rig.event.record.verdict is Verdict.NOK
     assert passed == [code]
 
@@ -226,6 +226,6 @@ def test_a_network_that_fails_ends_in_error_after_a_grab(rig: Rig, monkeypatch: 
 
 def test_a_trigger_that_got_no_answer_is_shown_as_error_without_a_record(rig: Rig) -> None:
     rig.procedure.show_error(TRIGGER, rig.loaded)
-    assert (rig.event.told, rig.event.record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)
+    assert (rig.event.reported, rig.event.record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)
     assert rig.event.record.inspection_id == 0
     assert not list(read_records(rig.folder))

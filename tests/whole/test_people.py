@@ -351,10 +351,13 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
     assert running.part("GOOD", good).verdict is VerdictCode.OK
     status = running.until(lambda e: e.line.counts.ok == 1)
     assert status.started_s < heard("GOOD").at_s <= time.monotonic()
-    assert heard("GOOD").told is VerdictCode.OK
+    assert heard("GOOD").reported is VerdictCode.OK
     assert running.part("MASTER-OK", bad, golden=True).verdict is VerdictCode.TEST
     assert running.part("NOT TRUSTED", good).verdict is VerdictCode.TEST
-    assert (heard("NOT TRUSTED").told, heard("NOT TRUSTED").record.verdict) == (VerdictCode.TEST, Verdict.OK)
+    assert (heard("NOT TRUSTED").reported, heard("NOT TRUSTED").record.verdict) == (
+        VerdictCode.TEST,
+        Verdict.OK,
+    )
     running.ask(ResetCounts("Ada"))
     running.until(lambda e: e.line.counts.total == 0)
 
@@ -363,4 +366,4 @@ def test_what_the_window_hears_of_a_part_is_what_the_plc_was_told(
 
     monkeypatch.setattr("station.engine.procedure.plc_result", broken)
     assert not running.part("FAULT", good).accepted
-    assert (heard("FAULT").told, heard("FAULT").record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)
+    assert (heard("FAULT").reported, heard("FAULT").record.verdict) == (VerdictCode.ERROR, Verdict.ERROR)

@@ -227,7 +227,7 @@ def test_a_test_picture_is_judged_and_recorded_and_the_plc_is_told_nothing(
     (before,) = station.run([frames[label_with("OK")["frame"]]])
     station.asked.append(TestImage())
     event = station.part_events(2)[-1]
-    assert (event.record.purpose, event.record.verdict, event.told) == (
+    assert (event.record.purpose, event.record.verdict, event.reported) == (
         Purpose.TEST,
         Verdict.OK,
         VerdictCode.NONE,

@@ -75,7 +75,7 @@ def lamp(status: StatusEvent | None, part: PartEvent | None, now_s: float) -> La
     age_s = 1e9 if part is None or part.at_s < status.started_s else now_s - part.at_s
     offline = status.line.offline
     blocked = offline is not Offline.NONE
-    if part is not None and age_s <= GONE_S and not (part.told is VerdictCode.OK and blocked):
+    if part is not None and age_s <= GONE_S and not (part.reported is VerdictCode.OK and blocked):
         return _of_part(part, Alarm.MASTERS_DUE in status.alarms, _fade(age_s))
     if offline is Offline.PLC_SILENT:
         cause = TEXTS[Alarm.PLC_SILENT].cause
@@ -94,17 +94,17 @@ def _of_part(part: PartEvent, masters_due: bool, strength: float) -> Lamp:
     reason = str(record.inspection.reason or "")
     if record.purpose is not Purpose.PART:
         return _test(strength, detail=PURPOSE_WORDS[record.purpose], more=verdict)
-    if part.told is VerdictCode.ERROR and record.verdict is not Verdict.ERROR:
+    if part.reported is VerdictCode.ERROR and record.verdict is not Verdict.ERROR:
         reason = LATE
-    if part.told is VerdictCode.ERROR:
+    if part.reported is VerdictCode.ERROR:
         return Lamp(word="ERROR", symbol="!", tone=Tone.WARN, strength=strength, detail=reason)
-    if part.told is VerdictCode.TEST and record.origin is Origin.REPLAY:
+    if part.reported is VerdictCode.TEST and record.origin is Origin.REPLAY:
         return _test(strength, detail="replay", more=verdict)
-    if part.told is VerdictCode.TEST:
+    if part.reported is VerdictCode.TEST:
         return _test(strength, detail="verdict cannot be trusted: see page Alarms", more=verdict)
-    if part.told is VerdictCode.OK and masters_due:
+    if part.reported is VerdictCode.OK and masters_due:
         return _test(strength, detail="master check is due: the PLC releases no parts", more=verdict)
-    if part.told is VerdictCode.OK:
+    if part.reported is VerdictCode.OK:
         return Lamp(word="OK", symbol="✓", tone=Tone.GOOD, strength=strength, detail="21 of 21 segments")
     return Lamp(word="NOK", symbol="✗", tone=Tone.BAD, strength=strength, detail=reason)
 
