@@ -52,6 +52,8 @@ class Stream(IntEnum):
     SENSOR = 47
     DEFECTS = 48
     """Defects; each kind has its own stream by its name."""
+    HEIGHTFIELD = 60
+    """Everything on a picture of the second renderer."""
 
 
 def stream(seed: int, name: Stream, *more: int | str) -> np.random.Generator:
