@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
-.PHONY: help setup demo test lint bench chaos-plc chaos-records chaos-panel soak-panel
+.PHONY: help setup demo test lint bench chaos-plc chaos-covers chaos-records chaos-panel soak-panel
 .PHONY: screenshots translations docs registers clean
 
 help: ## list the targets
@@ -33,6 +33,9 @@ bench: $(VENV)/.dev ## measure the times of the station, the PLC link, records, 
 
 chaos-plc: $(VENV)/.demo ## pass 10,000 parts in each PLC mode while both sides misbehave
 	$(BIN)/python -m deploy.chaos.plc
+
+chaos-covers: $(VENV)/.demo ## cover defects of labelled frames in twelve ways: LOTS="folder ..."
+	$(BIN)/python -m deploy.chaos.covered $(LOTS)
 
 chaos-records: $(VENV)/.demo ## kill a writer of records 300 times and check the archive
 	$(BIN)/python -m deploy.chaos.records

@@ -126,6 +126,21 @@ def _pair_rings(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _train_seen(arguments: argparse.Namespace) -> int:
+    from models.data.lot import data_hash
+    from models.seen.export import export_seen
+    from models.seen.train import SeenPlan, seen_card, train_seen
+
+    plan = SeenPlan(steps=arguments.steps, seed=arguments.seed, leave_out=tuple(arguments.leave_out))
+    network, found = train_seen(arguments.lots, plan, _print)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    digest = data_hash(arguments.lots)
+    export_seen(network, arguments.out / "seen.onnx", arguments.version, digest)
+    (arguments.out / "SEEN.md").write_text(seen_card(arguments.version, digest, plan, found))
+    _print(f"hidden columns that are recognised, by cover: {json.dumps(found)}")
+    return 0
+
+
 def _evaluate(arguments: argparse.Namespace) -> int:
     from models.data.folder import FolderKind, folder_kind
     from models.data.rendered import read_rendered
@@ -238,6 +253,7 @@ COMMANDS = {
     "fine-tune": _fine_tune,
     "train-ring": _train_ring,
     "pair-rings": _pair_rings,
+    "train-seen": _train_seen,
     "evaluate": _evaluate,
     "export": _export,
     "drift": _drift,

@@ -49,6 +49,9 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
             "combine two ring networks: precise where the first is confident, the second elsewhere",
         )
     )
+    _train_seen(
+        add("train-seen", "train the network that says what is hidden, and write its file and its card")
+    )
     _evaluate(
         add(
             "evaluate",
@@ -108,6 +111,18 @@ def _pair_rings(pair: argparse.ArgumentParser) -> None:
     pair.add_argument("first", type=Path, metavar="FILE", help="ring network that is more precise")
     pair.add_argument("second", type=Path, metavar="FILE", help="ring network that sees more surfaces")
     _run_options(pair)
+
+
+def _train_seen(seen: argparse.ArgumentParser) -> None:
+    help_of_lots = "folders of labelled frames at 13 um/px, made by weldgate-synth pictures or part"
+    seen.add_argument("lots", type=Path, nargs="+", metavar="LOT", help=help_of_lots)
+    _run_options(seen)
+    seen.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")
+    seen.add_argument(
+        "--steps", type=int, default=3000, metavar="N", help="number of batches (default: %(default)s)"
+    )
+    not_shown = "do not show these covers in training, and judge by them"
+    seen.add_argument("--leave-out", nargs="+", default=[], metavar="COVER", help=not_shown)
 
 
 def _evaluate(judge: argparse.ArgumentParser) -> None:

@@ -31,6 +31,8 @@ MAPPED = tuple(kind for kind in KINDS if kind.is_mapped)
 """Kinds of defect in the order of the channels of a newly trained network's defect map."""
 APPEARANCE_SIZE = 192
 """Number of appearance features of a crop."""
+SEEN_COLUMNS = 16
+"""Columns of a crop for which the network says how much of the weld is hidden."""
 METADATA_KEYS = (
     "weldgate.classes",
     "weldgate.thresholds",
@@ -171,6 +173,32 @@ class RingNetwork:
                 f"ring network failed: the output is not a set of offsets (shape {sectors.shape})"
             )
         return sectors
+
+
+class SeenNetwork:
+    """The network that says how much of the weld is hidden in a crop, by anything at all."""
+
+    def __init__(self, path: Path, threads: int = 2) -> None:
+        """Load and warm up the network. Raises ModelError if the file is not such a network."""
+        self._network = Network(path, threads)
+        self.file_hash = self._network.file_hash
+        _check_input(path, self._network.session, "crops", [1, SEGMENT_PX, SEGMENT_PX])
+        if [output.name for output in self._network.session.get_outputs()] != ["hidden"]:
+            raise ModelError(
+                f"{path}: not a network that says what is hidden; make one with weldgate-models train-seen"
+            )
+        self(np.zeros((1, SEGMENT_PX, SEGMENT_PX), np.uint8))
+
+    def __call__(self, crops: Image) -> Array:
+        """Return the hidden fraction of the weld (K, 16), 0 to 1, of crops (K, 128, 128) uint8.
+
+        There are 16 columns of 8 px along the weld. Raises ModelError.
+        """
+        (output,) = self._network.run(("hidden",), {"crops": crops[:, None]})
+        hidden = np.asarray(output, np.float64)
+        if hidden.shape != (len(crops), SEEN_COLUMNS) or not ((hidden >= 0) & (hidden <= 1)).all():
+            raise ModelError(f"the output is not a set of hidden fractions (shape {hidden.shape})")
+        return hidden
 
 
 def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: list[int]) -> None:

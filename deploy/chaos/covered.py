@@ -1,0 +1,117 @@
+"""Covers the defects of labelled parts in twelve ways; exit status 1 if one of the parts is then called OK.
+
+The same covers beside the weld of good parts must not change their verdict.
+"""
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+
+from deploy.chaos.covers import COVERS, Area, Image
+from models.data.lot import LabelledFrame, frames, read_labels
+from models.errors import LearningError
+from station.domain import SEGMENT_DEG, Inspection, Ring, Verdict
+from station.errors import WeldgateError
+from station.inspection.inspector import Inspector
+from station.inspection.loading import load_inspector
+from station.settings.file import load
+from station.settings.model import for_images
+
+NETWORKS = Path(__file__).parents[2] / "models" / "shipped"
+HALF_PX = 75.0
+"""Half the width of what is covered: the strip and a little more."""
+BESIDE_PX = 190.0
+"""Distance from the weld at which good parts are covered."""
+BESIDE_HALF_PX = 45.0
+BESIDE_DEG = 30.0
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run and print the table. Return 0 if no covered defect was called OK, 1 if one was, 2 on bad input."""
+    parser = argparse.ArgumentParser(
+        prog="python -m deploy.chaos.covered", description=(__doc__ or "").splitlines()[0]
+    )
+    parser.add_argument("lots", type=Path, nargs="+", metavar="LOT", help="labelled frames at 13 um/px")
+    parser.add_argument("-c", "--settings", type=Path, metavar="FILE", help="judge with these settings")
+    parser.add_argument("--seed", type=int, default=0)
+    own = parser.parse_args(arguments)
+    try:
+        settings = for_images(NETWORKS) if own.settings is None else load(own.settings)
+        inspector, _ = load_inspector(settings)
+        parts = [part for lot in own.lots for part in frames(lot, read_labels(lot))]
+    except (LearningError, WeldgateError) as error:
+        print(f"covered: {error}", file=sys.stderr)
+        return 2
+    found: dict[str, Counter[str]] = {name: Counter() for name in COVERS}
+    for number, (label, image) in enumerate(track(parts, disable=not sys.stderr.isatty())):
+        plain = inspector.inspect(image)
+        rng = np.random.default_rng([own.seed, number])
+        for name, verdict in _covered(inspector, label, image, plain, rng):
+            found[name][verdict] += 1
+    _print(found)
+    return 1 if any(counts["NOK OK"] for counts in found.values()) else 0
+
+
+def _covered(
+    inspector: Inspector, label: LabelledFrame, image: Image, plain: Inspection, rng: np.random.Generator
+) -> Iterator[tuple[str, str]]:
+    """Yield each cover and what became of the part, for a part that is judged rightly without one."""
+    if plain.ring is None or str(plain.verdict) != label.verdict:
+        return
+    areas = (
+        list(_defects(plain.ring, plain)) if label.verdict == "NOK" else list(_beside(plain.ring, image, rng))
+    )
+    if not areas:
+        return
+    weight = np.maximum.reduce([area.weight(image.shape) for area in areas])
+    for name, cover in COVERS.items():
+        if label.verdict == "OK" and name == "half light":
+            continue  # it cannot be kept away from the weld
+        yield name, f"{label.verdict} {inspector.inspect(cover(rng, image, weight)).verdict}"
+
+
+def _defects(ring: Ring, plain: Inspection) -> Iterator[Area]:
+    """Yield what hides the rejected segments, with a little of their neighbours."""
+    for segment, rejected in enumerate(plain.nok):
+        if rejected:
+            start = segment * SEGMENT_DEG - 1.5
+            yield Area(
+                ring.center_x_px, ring.center_y_px, ring.radius_px, start, start + SEGMENT_DEG + 3, HALF_PX
+            )
+    for finding in plain.findings:
+        yield Area(
+            ring.center_x_px,
+            ring.center_y_px,
+            ring.radius_px,
+            finding.start_deg - 3,
+            finding.end_deg + 3,
+            HALF_PX,
+        )
+
+
+def _beside(ring: Ring, image: Image, rng: np.random.Generator) -> Iterator[Area]:
+    """Yield a place inside the ring."""
+    start = float(rng.uniform(0, 360))
+    radius = ring.radius_px - BESIDE_PX
+    yield Area(ring.center_x_px, ring.center_y_px, radius, start, start + BESIDE_DEG, BESIDE_HALF_PX)
+
+
+def _print(found: dict[str, Counter[str]]) -> None:
+    table = Table("cover", "bad parts", "NOK", "ERROR", "OK (!)", "good parts", "still OK", "ERROR", "NOK")
+    rows = {**found, "all": sum(found.values(), Counter())}
+    for name, counts in rows.items():
+        bad = [counts[f"NOK {verdict}"] for verdict in (Verdict.NOK, Verdict.ERROR, Verdict.OK)]
+        good = [counts[f"OK {verdict}"] for verdict in (Verdict.OK, Verdict.ERROR, Verdict.NOK)]
+        table.add_row(name, *(str(n) for n in (sum(bad), *bad, sum(good), *good)))
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
