@@ -30,7 +30,11 @@ HALF_PX = 75.0
 BESIDE_PX = 190.0
 """Distance from the weld at which good parts are covered."""
 BESIDE_HALF_PX = 45.0
+"""Half the width of what is covered there."""
 BESIDE_DEG = 30.0
+"""Length of what is covered there."""
+MARGIN_DEG = 2.0
+"""How far a cover reaches beyond what it hides."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -53,21 +57,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for number, (label, image) in enumerate(track(parts, disable=not sys.stderr.isatty())):
         plain = inspector.inspect(image)
         rng = np.random.default_rng([own.seed, number])
-        for name, verdict in _covered(inspector, label, image, plain, rng):
+        for name, verdict in _covered(inspector, label, image, plain=plain, rng=rng):
             found[name][verdict] += 1
     _print(found)
     return 1 if any(counts["NOK OK"] for counts in found.values()) else 0
 
 
 def _covered(
-    inspector: Inspector, label: LabelledFrame, image: Image, plain: Inspection, rng: np.random.Generator
+    inspector: Inspector,
+    label: LabelledFrame,
+    image: Image,
+    *,
+    plain: Inspection,
+    rng: np.random.Generator,
 ) -> Iterator[tuple[str, str]]:
     """Yield each cover and what became of the part, for a part that is judged rightly without one."""
     if plain.ring is None or str(plain.verdict) != label.verdict:
         return
-    areas = (
-        list(_defects(plain.ring, plain)) if label.verdict == "NOK" else list(_beside(plain.ring, image, rng))
-    )
+    areas = list(_defects(plain.ring, plain)) if label.verdict == "NOK" else list(_beside(plain.ring, rng))
     if not areas:
         return
     weight = np.maximum.reduce([area.weight(image.shape) for area in areas])
@@ -78,29 +85,31 @@ def _covered(
 
 
 def _defects(ring: Ring, plain: Inspection) -> Iterator[Area]:
-    """Yield what hides the rejected segments, with a little of their neighbours."""
-    for segment, rejected in enumerate(plain.nok):
-        if rejected:
-            start = segment * SEGMENT_DEG - 1.5
-            yield Area(
-                ring.center_x_px, ring.center_y_px, ring.radius_px, start, start + SEGMENT_DEG + 3, HALF_PX
-            )
-    for finding in plain.findings:
-        yield Area(
-            ring.center_x_px,
-            ring.center_y_px,
-            ring.radius_px,
-            finding.start_deg - 3,
-            finding.end_deg + 3,
-            HALF_PX,
+    """Yield what hides the rejected segments and the findings, with a little of their neighbours."""
+    arcs = [(number * SEGMENT_DEG, (number + 1) * SEGMENT_DEG) for number, bad in enumerate(plain.nok) if bad]
+    arcs += [(finding.start_deg, finding.end_deg) for finding in plain.findings]
+    for start, end in arcs:
+        yield _area(
+            ring, start - MARGIN_DEG, end + MARGIN_DEG, radius_px=ring.radius_px, half_width_px=HALF_PX
         )
 
 
-def _beside(ring: Ring, image: Image, rng: np.random.Generator) -> Iterator[Area]:
+def _beside(ring: Ring, rng: np.random.Generator) -> Iterator[Area]:
     """Yield a place inside the ring."""
     start = float(rng.uniform(0, 360))
     radius = ring.radius_px - BESIDE_PX
-    yield Area(ring.center_x_px, ring.center_y_px, radius, start, start + BESIDE_DEG, BESIDE_HALF_PX)
+    yield _area(ring, start, start + BESIDE_DEG, radius_px=radius, half_width_px=BESIDE_HALF_PX)
+
+
+def _area(ring: Ring, start_deg: float, end_deg: float, *, radius_px: float, half_width_px: float) -> Area:
+    return Area(
+        center_x_px=ring.center_x_px,
+        center_y_px=ring.center_y_px,
+        radius_px=radius_px,
+        start_deg=start_deg,
+        end_deg=end_deg,
+        half_width_px=half_width_px,
+    )
 
 
 def _print(found: dict[str, Counter[str]]) -> None:
@@ -109,7 +118,7 @@ def _print(found: dict[str, Counter[str]]) -> None:
     for name, counts in rows.items():
         bad = [counts[f"NOK {verdict}"] for verdict in (Verdict.NOK, Verdict.ERROR, Verdict.OK)]
         good = [counts[f"OK {verdict}"] for verdict in (Verdict.OK, Verdict.ERROR, Verdict.NOK)]
-        table.add_row(name, *(str(n) for n in (sum(bad), *bad, sum(good), *good)))
+        table.add_row(name, *(str(count) for count in (sum(bad), *bad, sum(good), *good)))
     Console().print(table)
 
 

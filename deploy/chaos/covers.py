@@ -17,7 +17,7 @@ Weight = NDArray[np.float32]
 Cover = Callable[[np.random.Generator, Image, Weight], Image]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Area:
     """A piece of a ring, px and degrees, or what lies beside the ring."""
 

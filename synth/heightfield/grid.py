@@ -61,8 +61,8 @@ def _sampled(tile: Field, at_u: Field, at_v: Field) -> Field:
 
 def turned(x_mm: Field, y_mm: Field, angle_rad: float) -> tuple[Field, Field]:
     """Return the points in axes that are turned by an angle: along it, and across it."""
-    c, s = np.float32(np.cos(angle_rad)), np.float32(np.sin(angle_rad))
-    return c * x_mm + s * y_mm, c * y_mm - s * x_mm
+    cosine, sine = np.float32(np.cos(angle_rad)), np.float32(np.sin(angle_rad))
+    return cosine * x_mm + sine * y_mm, cosine * y_mm - sine * x_mm
 
 
 def with_slope(height: Field, cell_mm: float, slope: float) -> Field:
@@ -73,5 +73,5 @@ def with_slope(height: Field, cell_mm: float, slope: float) -> Field:
 
 def smooth_step(values: Field, low: float, high: float) -> Field:
     """Return 0 below `low`, 1 above `high`, and a smooth rise between."""
-    t = np.clip((values - low) / (high - low), 0.0, 1.0)
-    return np.asarray(t * t * (3 - 2 * t), np.float32)
+    part = np.clip((values - low) / (high - low), 0.0, 1.0)
+    return np.asarray(part * part * (3 - 2 * part), np.float32)

@@ -89,7 +89,7 @@ def _one(
     depth = min(uniform(rng, family.depth) * width, 0.8)
     radius = course.radius_mm + across_mm
     along = np.deg2rad((cells.angle_deg - at_deg + 180) % 360 - 180) * np.float32(radius)
-    across = cells.t * np.float32(course.half_width_mm) - np.float32(across_mm)
+    across = cells.across * np.float32(course.half_width_mm) - np.float32(across_mm)
     chosen = np.nonzero((np.abs(along) < length + 0.2) & (np.abs(across) < width + 0.2))[0]
     if not chosen.size:
         return None

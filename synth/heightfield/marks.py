@@ -120,22 +120,24 @@ def add_tack(rng: np.random.Generator, surface: Surface, joint: Joint, half_widt
     """Add a short straight weld beside the ring, as of a tab. It is a bead, but not the ring's."""
     angle = uniform(rng, (0, 2 * np.pi))
     away = joint.radius_mm + half_width_mm * uniform(rng, (1.2, 6))
-    u = (surface.x_mm - np.float32(joint.x_mm)) * np.float32(np.cos(angle)) + (
+    u_mm = (surface.x_mm - np.float32(joint.x_mm)) * np.float32(np.cos(angle)) + (
         surface.y_mm - np.float32(joint.y_mm)
     ) * np.float32(np.sin(angle))
-    v = -(surface.x_mm - np.float32(joint.x_mm)) * np.float32(np.sin(angle)) + (
+    v_mm = -(surface.x_mm - np.float32(joint.x_mm)) * np.float32(np.sin(angle)) + (
         surface.y_mm - np.float32(joint.y_mm)
     ) * np.float32(np.cos(angle))
-    t = (u - np.float32(away)) / np.float32(half_width_mm * uniform(rng, (0.7, 1.2)))
+    across = (u_mm - np.float32(away)) / np.float32(half_width_mm * uniform(rng, (0.7, 1.2)))
     length = uniform(rng, (1, 6))
-    inside = (1 - smooth_step(np.abs(t), 0.9, 1.05)) * (1 - smooth_step(np.abs(v), length, length + 0.1))
+    inside = (1 - smooth_step(np.abs(across), 0.9, 1.05)) * (
+        1 - smooth_step(np.abs(v_mm), length, length + 0.1)
+    )
     inside *= surface.place == Place.OTHER
     pitch = log_uniform(rng, (0.1, 0.5))
-    ripple = np.cos(2 * np.pi * (v + np.float32(half_width_mm) * t * t) / np.float32(pitch))
+    ripple = np.cos(2 * np.pi * (v_mm + np.float32(half_width_mm) * across * across) / np.float32(pitch))
     surface.height_mm += np.asarray(
         inside
         * (
-            uniform(rng, (-0.02, 0.08)) * (1 - np.minimum(np.abs(t), 1) ** 2)
+            uniform(rng, (-0.02, 0.08)) * (1 - np.minimum(np.abs(across), 1) ** 2)
             + log_uniform(rng, (0.001, 0.01)) * ripple
         ),
         np.float32,
@@ -152,9 +154,9 @@ def add_edge(rng: np.random.Generator, surface: Surface, joint: Joint, *, reach_
     """Add an edge of the part beside the ring; beyond it lies the dark, blurred ground."""
     angle = uniform(rng, (0, 2 * np.pi))
     away = joint.radius_mm + reach_mm + log_uniform(rng, (0.2, 5))
-    u = (surface.x_mm - np.float32(joint.x_mm)) * np.float32(np.cos(angle))
-    v = (surface.y_mm - np.float32(joint.y_mm)) * np.float32(np.sin(angle))
-    beyond = smooth_step(u + v, away, away + log_uniform(rng, (0.03, 1.5)))
+    u_mm = (surface.x_mm - np.float32(joint.x_mm)) * np.float32(np.cos(angle))
+    v_mm = (surface.y_mm - np.float32(joint.y_mm)) * np.float32(np.sin(angle))
+    beyond = smooth_step(u_mm + v_mm, away, away + log_uniform(rng, (0.03, 1.5)))
     surface.blend(beyond, reflectance=uniform(rng, (0.0, 0.5)), roughness=0.45)
     surface.height_mm -= beyond * np.float32(uniform(rng, (0, 0.5)))
 

@@ -104,13 +104,13 @@ def _smith(cosine: Field, a2: np.float32) -> Field:
 def shade(height_mm: Field, roughness: Field, light: Light, x_mm: Field, y_mm: Field) -> Field:
     """Return the radiance (H, W) of a height field, as if it reflected all light; cells are square."""
     cell = float(x_mm[0, 1] - x_mm[0, 0])
-    p = cv2.Scharr(height_mm, cv2.CV_32F, 1, 0, scale=1 / (32 * cell))
-    q = cv2.Scharr(height_mm, cv2.CV_32F, 0, 1, scale=1 / (32 * cell))
-    length = np.sqrt(1 + p * p + q * q)
+    slope_x = cv2.Scharr(height_mm, cv2.CV_32F, 1, 0, scale=1 / (32 * cell))
+    slope_y = cv2.Scharr(height_mm, cv2.CV_32F, 0, 1, scale=1 / (32 * cell))
+    length = np.sqrt(1 + slope_x * slope_x + slope_y * slope_y)
     shift = np.float32(1 / (2 * HEIGHT_MM))
     scale = np.float32((TABLE - 1) / 2)
-    at_x = np.clip((-p / length + x_mm * shift + 1) * scale, 0, TABLE - 1)
-    at_y = np.clip((-q / length + y_mm * shift + 1) * scale, 0, TABLE - 1)
+    at_x = np.clip((-slope_x / length + x_mm * shift + 1) * scale, 0, TABLE - 1)
+    at_y = np.clip((-slope_y / length + y_mm * shift + 1) * scale, 0, TABLE - 1)
     level = np.interp(np.log(roughness), np.log(ROUGHNESSES), np.arange(len(ROUGHNESSES))).astype(np.float32)
     radiance = np.zeros_like(height_mm)
     for index, value in enumerate(ROUGHNESSES):

@@ -13,10 +13,10 @@ Finish = Callable[[np.random.Generator, Field, Field, float], Field]
 
 def rolled(rng: np.random.Generator, x: Field, y: Field, cell_mm: float) -> Field:
     """Return long, shallow streaks in one direction, of several grains."""
-    u, v = turned(x, y, uniform(rng, (0, np.pi)))
+    u_mm, v_mm = turned(x, y, uniform(rng, (0, np.pi)))
     fine, coarse = log_uniform(rng, (2.2 * cell_mm, 0.15)), log_uniform(rng, (0.1, 0.8))
-    height = noise(rng, u, v, (log_uniform(rng, (3, 20)), fine))
-    height = height + uniform(rng, (0.5, 4)) * noise(rng, u, v, (log_uniform(rng, (3, 20)), coarse))
+    height = noise(rng, u_mm, v_mm, (log_uniform(rng, (3, 20)), fine))
+    height = height + uniform(rng, (0.5, 4)) * noise(rng, u_mm, v_mm, (log_uniform(rng, (3, 20)), coarse))
     return with_slope(height, cell_mm, log_uniform(rng, (0.01, 0.16)))
 
 
@@ -25,8 +25,10 @@ def brushed(rng: np.random.Generator, x: Field, y: Field, cell_mm: float) -> Fie
     angle = uniform(rng, (0, np.pi))
     height = np.zeros_like(x)
     for _ in range(3):
-        u, v = turned(x, y, angle + rng.normal() * 0.06)
-        height += noise(rng, u, v, (log_uniform(rng, (0.6, 5)), log_uniform(rng, (2.2 * cell_mm, 0.16))))
+        u_mm, v_mm = turned(x, y, angle + rng.normal() * 0.06)
+        height += noise(
+            rng, u_mm, v_mm, (log_uniform(rng, (0.6, 5)), log_uniform(rng, (2.2 * cell_mm, 0.16)))
+        )
     return with_slope(height, cell_mm, log_uniform(rng, (0.06, 0.45)))
 
 
@@ -38,13 +40,13 @@ def ground(rng: np.random.Generator, x: Field, y: Field, cell_mm: float) -> Fiel
 
 def milled(rng: np.random.Generator, x: Field, y: Field, cell_mm: float) -> Field:
     """Return the arcs of an end mill whose centre advances: sharp crests, one pitch apart."""
-    u, v = turned(x, y, uniform(rng, (0, 2 * np.pi)))
+    u_mm, v_mm = turned(x, y, uniform(rng, (0, 2 * np.pi)))
     radius = log_uniform(rng, (4, 60))
-    v = v - np.float32(uniform(rng, (-0.6, 0.6)) * min(radius, 12))
-    advance = u - np.sqrt(np.maximum(np.float32(radius**2) - v * v, 0.0))
+    v_mm = v_mm - np.float32(uniform(rng, (-0.6, 0.6)) * min(radius, 12))
+    advance = u_mm - np.sqrt(np.maximum(np.float32(radius**2) - v_mm * v_mm, 0.0))
     height = _feed_marks(rng, advance, x, y, log_uniform(rng, (4 * cell_mm, 0.6)))
     if rng.random() < 0.4:
-        back = u + np.sqrt(np.maximum(np.float32(radius**2) - v * v, 0.0))
+        back = u_mm + np.sqrt(np.maximum(np.float32(radius**2) - v_mm * v_mm, 0.0))
         height = height + uniform(rng, (0.2, 0.9)) * _feed_marks(
             rng, back, x, y, log_uniform(rng, (4 * cell_mm, 0.6))
         )
@@ -78,12 +80,12 @@ def peeled(rng: np.random.Generator, x: Field, y: Field, cell_mm: float) -> Fiel
 
 def hatched(rng: np.random.Generator, x: Field, y: Field, cell_mm: float) -> Field:
     """Return the grid of spots or lines that laser cleaning leaves, or a knurl."""
-    u, v = turned(x, y, uniform(rng, (0, np.pi)))
+    u_mm, v_mm = turned(x, y, uniform(rng, (0, np.pi)))
     pitch = log_uniform(rng, (5 * cell_mm, 0.5))
     other = pitch * uniform(rng, (0.7, 1.4))
     wander = np.float32(0.15 * pitch) * noise(rng, x, y, (1.0, 1.0))
-    lines = np.cos(2 * np.pi * (u + wander) / pitch)
-    height = lines * np.cos(2 * np.pi * (v + wander) / other) if rng.random() < 0.6 else lines
+    lines = np.cos(2 * np.pi * (u_mm + wander) / pitch)
+    height = lines * np.cos(2 * np.pi * (v_mm + wander) / other) if rng.random() < 0.6 else lines
     return with_slope(np.asarray(height, np.float32), cell_mm, log_uniform(rng, (0.03, 0.3)))
 
 

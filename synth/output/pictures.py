@@ -83,8 +83,8 @@ def _label(name: str, pictured: Pictured, um_per_px: float) -> dict[str, Any]:
         label["radius"] = round(course.radius_mm * per_mm, 3)
         label["bead_halfwidth_mm"] = round(course.half_width_mm, 3)
         label["defects"] = [
-            {"kind": "missing_weld", "family": "bare_joint", "angle_deg": [round(a, 3), round(b, 3)]}
-            for a, b in course.missing_deg
+            {"kind": "missing_weld", "family": "bare_joint", "angle_deg": [round(start, 3), round(end, 3)]}
+            for start, end in course.missing_deg
         ] + [
             {
                 "kind": "hole",
