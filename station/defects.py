@@ -43,6 +43,8 @@ class Reason(StrEnum):
     RECORD_FAILED = "record could not be written", 14
     ABORTED = "aborted by the PLC", 15
     INTERNAL = "internal error", 16
+    SEGMENT_NOT_SEEN = "segment not seen", 17
+    UNLIKE_TRAINING = "unlike the training images", 18
 
 
 class Width(Enum):

@@ -93,6 +93,37 @@ class Quality:
     """Root mean square of the Laplacian, divided by the mean grey level."""
 
 
+class Unseen(StrEnum):
+    """Why a segment was not seen, so that its scores say nothing."""
+
+    NO_STRUCTURE = "no structure"
+    TOO_DARK = "too dark"
+    TOO_BRIGHT = "too bright"
+    BLURRED = "blurred"
+    NO_WELD = "no weld between its borders"
+    COVERED = "covered"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SegmentQuality:
+    """What shows whether a segment was seen, measured on its crop."""
+
+    mean_dn: float
+    """Mean grey level, 0 to 255."""
+    dark_fraction: float
+    """Fraction of the pixels at grey level 2 or below."""
+    saturated_fraction: float
+    """Fraction of the pixels at grey level 254 or above."""
+    contrast: float
+    """Standard deviation of the grey level, divided by its mean."""
+    sharpness: float
+    """Root mean square of the Laplacian, divided by the mean grey level."""
+    weld: float
+    """Fraction of the segment in which weld or joint lies on the ring, 0 to 1."""
+    visible: float | None = None
+    """Fraction of the segment that nothing covers, 0 to 1, as a network sees it; None without one."""
+
+
 @dataclass(frozen=True, slots=True)
 class SegmentScores:
     """Probabilities of one segment: OK, and each defect kind that the classifier knows; their sum is 1."""
@@ -136,7 +167,7 @@ class Timing:
 
 @dataclass(frozen=True, slots=True)
 class Inspection:
-    """Result of inspecting one part; OK requires 21 judged segments, none of them rejected."""
+    """Result of inspecting one part; OK requires 21 segments, all of them seen and judged, none rejected."""
 
     verdict: Verdict
     reason: Reason | None
@@ -154,22 +185,66 @@ class Inspection:
     look: tuple[float, ...] = ()
     """Appearance features of the part: mean over its crops, whitened on the training crops (zero mean, unit
     covariance)."""
+    segment_quality: tuple[SegmentQuality, ...] = ()
+    """Image quality of each of the 21 segments; empty if it was not measured."""
+    unseen: tuple[Unseen | None, ...] = ()
+    """Why each of the 21 segments was not seen, None for one that was; empty if none was looked at."""
+    detail: str | None = None
+    """One line with the numbers behind the reason, and with the segments that were not seen."""
 
     def __post_init__(self) -> None:
         judged = len(self.scores) == SEGMENTS and self.ring is not None
-        if self.verdict is Verdict.OK and not (judged and self.reason is None and not any(self.rejected)):
-            raise ValueError("OK needs a ring, 21 judged segments, none of them rejected, and no reason")
+        seen = len(self.unseen) == SEGMENTS and not any(self.unseen)
+        if self.verdict is Verdict.OK and not (
+            judged and seen and self.reason is None and not any(self.rejected)
+        ):
+            raise ValueError("OK needs a ring, 21 judged segments, all seen, none rejected, and no reason")
         if len(self.rejected) != len(self.scores):
             raise ValueError(f"{len(self.scores)} scores, but {len(self.rejected)} decisions on them")
+        for name in ("segment_quality", "unseen"):
+            if len(getattr(self, name)) not in (0, SEGMENTS):
+                raise ValueError(f"{name} has {len(getattr(self, name))} entries, needed 0 or {SEGMENTS}")
 
     @property
     def nok(self) -> tuple[bool, ...]:
         """True for each of the 21 segments that is rejected; empty if none was judged."""
         return tuple(kind is not None for kind in self.rejected)
 
+    @property
+    def invalid(self) -> tuple[bool, ...]:
+        """True for each of the 21 segments that was not seen and is not rejected either.
+
+        Its scores say nothing. Empty if none was looked at.
+        """
+        rejected = self.rejected or (None,) * len(self.unseen)
+        return tuple(
+            cause is not None and kind is None for cause, kind in zip(self.unseen, rejected, strict=True)
+        )
+
+    @property
+    def nok_scores(self) -> tuple[float | None, ...]:
+        """Score of NOK of each of the 21 segments, None for one that is invalid; empty if none was judged."""
+        invalid = self.invalid or (False,) * len(self.scores)
+        return tuple(
+            None if says_nothing else scores.nok
+            for scores, says_nothing in zip(self.scores, invalid, strict=False)
+        )
+
+    @property
+    def worst(self) -> float | None:
+        """Highest score of NOK of the segments that are not invalid; None if there is none."""
+        return max((score for score in self.nok_scores if score is not None), default=None)
+
     @staticmethod
     def error(
-        reason: Reason, ring: Ring | None = None, quality: Quality | None = None, timing: Timing | None = None
+        reason: Reason,
+        ring: Ring | None = None,
+        quality: Quality | None = None,
+        timing: Timing | None = None,
+        *,
+        detail: str | None = None,
     ) -> "Inspection":
         """Return the result for a part that could not be judged."""
-        return Inspection(Verdict.ERROR, reason, ring=ring, quality=quality, timing=timing or Timing())
+        return Inspection(
+            Verdict.ERROR, reason, ring=ring, quality=quality, timing=timing or Timing(), detail=detail
+        )

@@ -1,7 +1,8 @@
-"""Converts records of format versions 1 and 2 to the current version.
+"""Converts records of format versions 1 to 3 to the current version.
 
-Version 1 has no appearance, purpose, recipe and chain. In both versions the kinds of defect are field names
-instead of data, and the decision on each segment is missing.
+Version 1 has no appearance, purpose, recipe and chain. In versions 1 and 2 the kinds of defect are field
+names instead of data, and the decision on each segment is missing. Up to version 3 nobody looked whether each
+segment was seen: all count as seen where they were judged, as the verdict was made on that.
 """
 
 from typing import Any
@@ -12,9 +13,9 @@ from station.classify.decision import rejected_kinds
 from station.classify.thresholds import Thresholds
 from station.domain import Finding, SegmentScores
 
-FORMAT = 3
+FORMAT = 4
 """Version of the record format that is written."""
-OLD = (1, 2)
+OLD = (1, 2, 3)
 """Older versions that can be read."""
 KINDS = {"hole": ("hole_threshold", "hole_min_mm"), "missing_weld": ("missing_threshold", "missing_min_mm")}
 """Kinds of defect in the old versions, with the field names of their threshold and minimum length."""
@@ -25,10 +26,17 @@ _THRESHOLDS = TypeAdapter(Thresholds)
 
 
 def upgraded(raw: dict[str, Any]) -> dict[str, Any]:
-    """Return the JSON object of a record of version 1 or 2 as an object of the current version.
+    """Return the JSON object of a record of version 1, 2 or 3 as an object of the current version.
 
-    Raises KeyError, TypeError or ValueError if `raw` is not a record of version 1 or 2.
+    Raises KeyError, TypeError or ValueError if `raw` is not a record of an older version.
     """
+    as_three = raw if raw.get("format", 1) == 3 else _from_two(raw)
+    inspection = as_three["inspection"]
+    unseen = [None] * len(inspection["scores"])
+    return {**as_three, "inspection": {**inspection, "unseen": unseen}, "format": FORMAT}
+
+
+def _from_two(raw: dict[str, Any]) -> dict[str, Any]:
     inspection, provenance = dict(raw["inspection"]), dict(raw["provenance"])
     limits = [
         {"kind": kind, "threshold": provenance.pop(threshold), "min_mm": provenance.pop(min_mm, 0.0)}
@@ -48,5 +56,4 @@ def upgraded(raw: dict[str, Any]) -> dict[str, Any]:
         **raw,
         "inspection": {**inspection, "rejected": list(rejected)},
         "provenance": provenance,
-        "format": FORMAT,
     }

@@ -1,4 +1,4 @@
-"""Records: one inspection on disk, in format version 3; `station.record_versions` reads versions 1 and 2.
+"""Records: one inspection on disk, in format version 4; `station.record_versions` reads versions 1 to 3.
 
 A record has two files: `YYYY-MM-DD/NNNNNNNN.png`, the frame as grabbed, lossless, and `NNNNNNNN.json`,
 everything that led to its verdict. The index is `index.sqlite` next to the day folders. Any image viewer and
@@ -9,7 +9,7 @@ import json
 from dataclasses import dataclass
 from datetime import datetime
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from station.classify.thresholds import Thresholds
 from station.domain import Inspection, Origin, Purpose, Verdict
@@ -90,12 +90,9 @@ def to_json(record: Record) -> bytes:
 def from_json(text: bytes) -> Record:
     """Return the record in this JSON text of any version. Raises pydantic.ValidationError."""
     try:
-        return _ADAPTER.validate_json(text)
-    except ValidationError as error:
-        try:
-            raw = json.loads(text)
-            if raw.get("format", 1) not in OLD:
-                raise error
-            return _ADAPTER.validate_json(json.dumps(upgraded(raw)))
-        except (ValueError, KeyError, TypeError, AttributeError):
-            raise error from None
+        raw = json.loads(text)
+        if raw.get("format", 1) in OLD:
+            text = json.dumps(upgraded(raw)).encode()
+    except (ValueError, KeyError, TypeError, AttributeError):
+        pass  # not a record: the adapter says what is wrong with it
+    return _ADAPTER.validate_json(text)

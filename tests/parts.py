@@ -8,7 +8,18 @@ from typing import Any
 
 from station.classify.thresholds import Limit, Thresholds
 from station.defects import KINDS, Reason, kind_named
-from station.domain import SEGMENTS, Inspection, Origin, Quality, Ring, SegmentScores, Timing, Verdict
+from station.domain import (
+    SEGMENTS,
+    Inspection,
+    Origin,
+    Quality,
+    Ring,
+    SegmentQuality,
+    SegmentScores,
+    Timing,
+    Unseen,
+    Verdict,
+)
 from station.records import Provenance, Record
 
 HOLE, MISSING_WELD = kind_named("hole"), kind_named("missing_weld")
@@ -46,6 +57,31 @@ def thresholds(
     return Thresholds((Limit(HOLE, hole, hole_mm), Limit(MISSING_WELD, missing_weld, missing_mm)), segments)
 
 
+def segment_quality() -> SegmentQuality:
+    """A segment that was well seen."""
+    return SegmentQuality(
+        mean_dn=100.0,
+        dark_fraction=0.0,
+        saturated_fraction=0.0,
+        contrast=0.3,
+        sharpness=0.1,
+        weld=1.0,
+    )
+
+
+def unseen_inspection() -> Inspection:
+    """A part whose segment 5 was too dark."""
+    dark = replace(segment_quality(), mean_dn=3.0, dark_fraction=0.91)
+    return replace(
+        ok_inspection(),
+        verdict=Verdict.ERROR,
+        reason=Reason.SEGMENT_NOT_SEEN,
+        segment_quality=tuple(dark if i == 4 else segment_quality() for i in range(SEGMENTS)),
+        unseen=tuple(Unseen.TOO_DARK if i == 4 else None for i in range(SEGMENTS)),
+        detail="segment 5: too dark (mean grey level 3.0, limit 10)",
+    )
+
+
 def ok_inspection() -> Inspection:
     """A part that was judged OK."""
     return Inspection(
@@ -55,6 +91,8 @@ def ok_inspection() -> Inspection:
         quality=Quality(100.0, 0.0, 0.0, 0.1),
         scores=good_scores(),
         rejected=(None,) * SEGMENTS,
+        segment_quality=(segment_quality(),) * SEGMENTS,
+        unseen=(None,) * SEGMENTS,
         timing=Timing(12.0, 30.0, 3.0, 9.0),
     )
 

@@ -144,7 +144,9 @@ class _Collected:
         images = segments(unwrap(image, judged.ring))
         rows = zip(judged.scores, labels, judged.rejected, strict=True)
         for index, (scores, label, reason) in enumerate(rows):
-            if label != IGNORED:
+            if judged.invalid[index]:
+                self._unjudged += label > OK
+            elif label != IGNORED:
                 self._rows.append((row_of(scores), label, LABEL_OF[reason]))
                 self._worst.append(Worst(f"{name}, segment {index + 1}", images[index], label, scores.nok))
         self._worst = _farthest(self._worst)

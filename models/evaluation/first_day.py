@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from station.analysis.truth import interval
+from station.defects import Reason
 from station.domain import Verdict
 from station.files.image import read_image
 from station.inspection.inspector import Inspector
@@ -76,8 +77,9 @@ def first_day(
     limits = inspector.thresholds.kinds
     for path in paths:
         judged = inspector.inspect(read_image(path))
-        if judged.verdict is Verdict.ERROR or judged.novelty is None:
-            failed.append(f"{path.name}: {judged.reason}")
+        not_judged = judged.verdict is Verdict.ERROR and judged.reason is not Reason.UNLIKE_TRAINING
+        if not_judged or judged.novelty is None:
+            failed.append(f"{path.name}: {judged.reason}" + (f", {judged.detail}" if judged.detail else ""))
         else:
             names.append(path.name)
             over = max(scores.defects[one.kind] / one.threshold for scores in judged.scores for one in limits)

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from station.analysis.decided import defect_kinds
+from station.analysis.worst_segment import WORST, worst_segment
 from station.archive.reader import Listed
 from station.defects import KINDS, DefectKind, kind_of
-from station.domain import SEGMENTS, Inspection
+from station.domain import SEGMENTS
 from station.errors import ImageError, LocateError, RecordError
 from station.files.durable import replacing
 from station.files.image import encode_png, read_image
@@ -25,6 +26,8 @@ OK_FOLDER = "ok"
 SEPARATOR, ADDITIONAL = "\x0f", "\x14"
 """Separators of the Q-DAS ASCII transfer format: between characteristics, and between a value and its
 additions."""
+VALID, INVALID = 0, 255
+"""Attributes of a value in the Q-DAS ASCII transfer format."""
 
 
 def export(
@@ -76,6 +79,7 @@ def flat(entry: Listed) -> dict[str, Any]:
         "origin": str(record.origin),
         "verdict": str(record.verdict),
         "reason": None if inspection.reason is None else str(inspection.reason),
+        "detail": inspection.detail,
         "shown_to_plc": entry.shown_to_plc,
         "recipe": record.provenance.recipe,
         "model_version": record.provenance.model_version,
@@ -89,12 +93,10 @@ def flat(entry: Listed) -> dict[str, Any]:
         "worst_area_mm2": None if worst is None else worst.area_mm2,
         "novelty": inspection.novelty,
     }
-    scores = _scores(inspection)
+    quality = worst_segment(inspection)
+    row |= {f"worst_{name}": None if quality is None else getattr(quality, name) for name in WORST}
+    scores = inspection.nok_scores or (None,) * SEGMENTS
     return row | {f"p_nok_{i}": score for i, score in enumerate(scores, start=1)}
-
-
-def _scores(inspection: Inspection) -> list[float | None]:
-    return [scores.nok for scores in inspection.scores] or [None] * SEGMENTS
 
 
 def _csv(target: Path, entries: list[Listed]) -> None:
@@ -133,11 +135,17 @@ Kinds = dict[int, DefectKind | None]
 
 
 def _as_judged(record: Record) -> Kinds:
-    return dict(enumerate(defect_kinds(record), start=1))
+    kinds = defect_kinds(record)
+    return {number: kinds[number - 1] for number in _seen(record)}
 
 
 def _all_ok(record: Record) -> Kinds:
-    return dict.fromkeys(range(1, SEGMENTS + 1))
+    return dict.fromkeys(_seen(record))
+
+
+def _seen(record: Record) -> list[int]:
+    """Return the numbers of the segments that were seen: a cover must not be learned as a good weld."""
+    return [number for number, cause in enumerate(record.inspection.unseen, start=1) if cause is None]
 
 
 def _reviewed(
@@ -235,8 +243,10 @@ def _dfq(target: Path, entries: list[Listed]) -> None:
     for entry in judged:
         if entry.record is not None:
             when = _qdas_time(entry.record.grabbed_at)
-            scores = entry.record.inspection.scores
-            values = [f"{own.nok:.4f}{ADDITIONAL}0{ADDITIONAL}{when}" for own in scores]
+            values = [
+                f"{own or 0.0:.4f}{ADDITIONAL}{VALID if own is not None else INVALID}{ADDITIONAL}{when}"
+                for own in entry.record.inspection.nok_scores
+            ]
             lines.append(SEPARATOR.join(values))
     target.write_bytes(("\r\n".join(lines) + "\r\n").encode("cp1252", "replace"))
 

@@ -5,7 +5,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
-from station.domain import SEGMENTS, Purpose, Verdict
+from station.analysis.worst_segment import worst_segment
+from station.domain import SEGMENTS, Purpose, SegmentQuality, Verdict
 from station.records import Record
 
 SHIFTS_H = (6, 14, 22)
@@ -26,6 +27,8 @@ class Point:
     saturated: float | None
     """Fraction of saturated pixels."""
     novelty: float | None
+    worst_segment: SegmentQuality | None
+    """Worst value of each kind among the segments."""
     cycle_ms: float
     """Time for grabbing and inspecting the part."""
 
@@ -92,11 +95,12 @@ def summarise(records: Iterable[Record]) -> Summary:
             Point(
                 number=record.inspection_id,
                 verdict=record.verdict,
-                worst=max((scores.nok for scores in inspection.scores), default=None),
+                worst=inspection.worst,
                 mean_dn=None if quality is None else quality.mean_dn,
                 sharpness=None if quality is None else quality.sharpness,
                 saturated=None if quality is None else quality.saturated_share,
                 novelty=inspection.novelty,
+                worst_segment=worst_segment(inspection),
                 cycle_ms=sum(ms for ms in steps_ms if ms is not None),
             )
         )

@@ -206,11 +206,10 @@ class Archive:
     def _list(self, record: Record, record_file: str, sha256: str, frame_state: str) -> None:
         inspection = record.inspection
         chain = link(self._chain, sha256)
-        worst = max((scores.nok for scores in inspection.scores), default=None)
         found = [
-            (record.inspection_id, number, scores.nok)
-            for number, scores in enumerate(inspection.scores, start=1)
-            if scores.nok >= SEARCHABLE_SCORE
+            (record.inspection_id, number, score)
+            for number, score in enumerate(inspection.nok_scores, start=1)
+            if score is not None and score >= SEARCHABLE_SCORE
         ]
         values = {
             "inspection_id": record.inspection_id,
@@ -220,7 +219,7 @@ class Archive:
             "origin": record.origin,
             "verdict": inspection.verdict,
             "reason": inspection.reason,
-            "worst_score": worst,
+            "worst_score": inspection.worst,
             "frame_file": record.frame_file,
             "record_file": record_file,
             "record_sha256": sha256,

@@ -45,8 +45,15 @@ def plc_result(
         inspection_id=record.inspection_id,
         reason=reason,
         error_code=ERROR_NOT_JUDGED + reason if inspection.verdict is Verdict.ERROR else 0,
-        seg_scores=tuple(round(min(max(score.nok, 0.0), 1.0) * 10_000) for score in inspection.scores),
-        seg_nok_mask=sum(1 << segment for segment, rejected in enumerate(inspection.nok) if rejected),
-        seg_invalid_mask=0 if inspection.scores else ALL_SEGMENTS,
+        seg_scores=tuple(
+            0 if score is None else round(min(max(score, 0.0), 1.0) * 10_000)
+            for score in inspection.nok_scores
+        ),
+        seg_nok_mask=_mask(inspection.nok),
+        seg_invalid_mask=_mask(inspection.invalid) if inspection.scores else ALL_SEGMENTS,
         flags=Flags(sum(flag for flag, active in flags if active)),
     )
+
+
+def _mask(segments: tuple[bool, ...]) -> int:
+    return sum(1 << index for index, chosen in enumerate(segments) if chosen)

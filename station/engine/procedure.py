@@ -147,7 +147,8 @@ class Procedure:
         publish_ms = _ms_since(start)
         if result.error_code or not shown:
             code = result.error_code if shown else self._line.state().error_code or ERROR_DEADLINE
-            self._alarm_log.add_event(code, f"part {record.inspection_id}")
+            detail = f", {record.inspection.detail}" if shown and record.inspection.detail else ""
+            self._alarm_log.add_event(code, f"part {record.inspection_id}{detail}")
         if not shown:
             log.warning(
                 "part %d, %s: verdict %s came too late for the PLC",
@@ -155,7 +156,15 @@ class Procedure:
                 record.serial,
                 record.verdict,
             )
-        if novel:
+        if record.inspection.detail is not None:
+            log.warning(
+                "part %d, %s: %s, %s",
+                record.inspection_id,
+                record.serial,
+                record.inspection.reason,
+                record.inspection.detail,
+            )
+        elif novel:
             log.warning(
                 "part %d, %s: unlike the training images (distance %.2f); check light, focus and surface",
                 record.inspection_id,

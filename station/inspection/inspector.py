@@ -1,5 +1,6 @@
-"""Judges a frame: locate, unwrap, check quality, classify, decide. Uses no device and no file."""
+"""Judges a frame: locate, unwrap, check what was seen, classify, decide. Uses no device and no file."""
 
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -12,9 +13,11 @@ from station.classify.thresholds import in_use
 from station.defects import Reason
 from station.domain import Image, Inspection, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
+from station.inspection.verdict import Novelty, decide
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from station.vision.locate import Expected, locate
 from station.vision.quality import gate, measure
+from station.vision.seen import causes, measure_segments
 from station.vision.unwrap import segments, unwrap
 
 APPEARANCE_DECIMALS = 3
@@ -42,6 +45,7 @@ class Inspector:
         self.classifier = classifier
         self._weld = weld
         self._quality = quality
+        self._novel = model.novel
         px_per_mm = 1000.0 / weld.um_per_px
         self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
         self.card = card = classifier.card
@@ -51,46 +55,57 @@ class Inspector:
 
     def locate(self, image: Image) -> Ring:
         """Return the ring of the weld in `image` (height, width) uint8. Raises LocateError, ModelError."""
-        return locate(image, self._expected, self._ring_network)
+        return locate(image, self._expected, self._ring_network).ring
 
     def is_novel(self, judged: Inspection) -> bool:
         """Return whether a part differs from all training images, so that its verdict is less reliable."""
         return judged.novelty is not None and judged.novelty > self.card.novelty_limit
 
     def inspect(self, image: Image, grab_ms: float | None = None) -> Inspection:
-        """Return the inspection of `image` (height, width) uint8; ERROR unless 21 segments were judged."""
+        """Return the inspection of `image` (height, width) uint8; OK only if all 21 were seen and judged."""
         start = perf_counter()
         try:
-            ring = self.locate(image)
+            located = locate(image, self._expected, self._ring_network)
         except LocateError as error:
             reason = Reason.WELD_OUT_OF_VIEW if error.out_of_view else Reason.NO_WELD_FOUND
-            return Inspection.error(reason, timing=Timing(grab_ms, _ms(start)))
-        except ModelError:
-            return Inspection.error(Reason.MODEL_FAILED, timing=Timing(grab_ms, _ms(start)))
-        locate_ms, start = _ms(start), perf_counter()
+            return Inspection.error(reason, timing=Timing(grab_ms, _ms(start)), detail=str(error))
+        except ModelError as error:
+            return Inspection.error(
+                Reason.MODEL_FAILED, timing=Timing(grab_ms, _ms(start)), detail=str(error)
+            )
+        ring, locate_ms, start = located.ring, _ms(start), perf_counter()
         strip = unwrap(image, ring)
+        crops = segments(strip)
         quality = measure(strip)
+        seen = measure_segments(crops, located.presence)
         unwrap_ms, start = _ms(start), perf_counter()
+        not_judged = Inspection(
+            Verdict.ERROR,
+            Reason.MODEL_FAILED,
+            ring=ring,
+            quality=quality,
+            segment_quality=seen,
+            unseen=causes(seen, self._quality),
+            timing=Timing(grab_ms, locate_ms, unwrap_ms),
+        )
         unfit = gate(quality, self._quality)
         if unfit is not None:
-            return Inspection.error(unfit, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
+            return replace(not_judged, reason=unfit[0], detail=unfit[1])
         try:
-            crops = segments(strip)
             judged = self.classifier(crops)
             scores = self._average_mirrored(crops, judged.scores)
-        except ModelError:
-            return Inspection.error(Reason.MODEL_FAILED, ring, quality, Timing(grab_ms, locate_ms, unwrap_ms))
+        except ModelError as error:
+            return replace(not_judged, detail=str(error))
         um_per_px = self._weld.um_per_px
         found = findings(scores, judged.maps, judged.mapped, self.thresholds, ring=ring, um_per_px=um_per_px)
         rejected = rejected_kinds(scores, found, self.thresholds)
-        reasons = sorted({kind for kind in rejected if kind is not None}, key=lambda kind: kind.code)
-        rejecting = (finding for finding in found if finding.kind in reasons)
-        worst = max(rejecting, key=lambda finding: finding.score, default=None)
-        return Inspection(
-            verdict=Verdict.NOK if reasons else Verdict.OK,
-            reason=next(iter(reasons), None) if worst is None else worst.kind,
-            ring=ring,
-            quality=quality,
+        novelty = Novelty(judged.novelty, self.card.novelty_limit, self._novel)
+        verdict, why, detail = decide(rejected, found, seen, limits=self._quality, novelty=novelty)
+        return replace(
+            not_judged,
+            verdict=verdict,
+            reason=why,
+            detail=detail,
             scores=scores,
             findings=found,
             rejected=rejected,

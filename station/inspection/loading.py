@@ -55,7 +55,7 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         ring_network, classifier, weld=settings.weld, quality=settings.quality, model=settings.model
     )
     parts = (
-        settings.model_dump_json(include={"camera", "weld", "quality"}),
+        settings.model_dump_json(include={"camera": True, "weld": True, "quality": True, "model": {"novel"}}),
         ring_network.file_hash,
         classifier.card.file_hash,
         *_words_of(inspector.thresholds),
@@ -68,7 +68,7 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
         thresholds=inspector.thresholds,
         limits_hash=hashlib.sha256(
-            settings.model_dump_json(include={"weld", "quality"}).encode()
+            settings.model_dump_json(include={"weld": True, "quality": True, "model": {"novel"}}).encode()
         ).hexdigest(),
     )
     return inspector, provenance

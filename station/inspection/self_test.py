@@ -31,4 +31,5 @@ class SelfTest:
 
 
 def _found(inspection: Inspection) -> tuple[object, ...]:
-    return inspection.verdict, inspection.ring, inspection.scores, inspection.findings
+    seen = inspection.segment_quality
+    return inspection.verdict, inspection.ring, inspection.scores, inspection.findings, seen

@@ -70,10 +70,10 @@ def compare(sources: Sequence[Source], results: Mapping[str, Replayed], judge: P
             continue
         before, now = record.inspection, results[source.name]
         compared += 1
-        scores = tuple(segment.nok for segment in before.scores)
         if _judged_by(record.provenance) == _judged_by(judge) and before.verdict is not Verdict.ERROR:
             same += 1
-            if (before.verdict, scores, before.findings) != (now.verdict, now.scores, now.findings):
+            found = before.verdict, before.nok_scores, before.findings
+            if found != (now.verdict, now.scores, now.findings):
                 not_alike.append(source.name)
         if before.verdict is not now.verdict:
             flips.append(
@@ -81,7 +81,7 @@ def compare(sources: Sequence[Source], results: Mapping[str, Replayed], judge: P
                     name=source.name,
                     before=before.verdict,
                     now=now.verdict,
-                    worst_before=max(scores, default=None),
+                    worst_before=before.worst,
                     worst_now=now.worst,
                 )
             )

@@ -44,9 +44,12 @@ def as_replayed(name: str, inspection: Inspection, factor: float, warnings: Sequ
         verdict=inspection.verdict,
         reason=None if inspection.reason is None else str(inspection.reason),
         circle=_circle(inspection, factor),
-        scores=tuple(segment.nok for segment in inspection.scores),
+        scores=() if inspection.worst is None else inspection.nok_scores,
         findings=inspection.findings,
         novelty=inspection.novelty,
+        detail=inspection.detail,
+        unseen=inspection.unseen,
+        segment_quality=inspection.segment_quality,
         inspection_ms=sum(ms for ms in steps if ms is not None),
         warnings=tuple(warnings),
     )

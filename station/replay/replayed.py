@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from station.domain import Finding, Verdict
+from station.domain import Finding, SegmentQuality, Unseen, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,10 +25,17 @@ class Replayed:
     """Reason of the verdict, or why the image was not inspected; None for OK."""
     circle: Circle | None = None
     """Ring of the weld; None if no ring was found."""
-    scores: tuple[float, ...] = ()
-    """Score of NOK of each of the 21 segments; empty if none was judged."""
+    scores: tuple[float | None, ...] = ()
+    """Score of NOK of each of the 21 segments, None for one that was not seen and is not rejected; empty if
+    there is no score at all."""
     findings: tuple[Finding, ...] = ()
     novelty: float | None = None
+    detail: str | None = None
+    """One line with the numbers behind the reason, and with the segments that were not seen."""
+    unseen: tuple[Unseen | None, ...] = ()
+    """Why each of the 21 segments was not seen, None for one that was; empty if none was looked at."""
+    segment_quality: tuple[SegmentQuality, ...] = ()
+    """Image quality of each of the 21 segments; empty if it was not measured."""
     inspection_ms: float | None = None
     """Duration of the inspection; None if the image could not be read or inspected."""
     warnings: tuple[str, ...] = ()
@@ -42,4 +49,4 @@ class Replayed:
     @property
     def worst(self) -> float | None:
         """Highest score of NOK among the segments; None if none was judged."""
-        return max(self.scores, default=None)
+        return max((score for score in self.scores if score is not None), default=None)

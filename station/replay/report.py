@@ -139,6 +139,7 @@ class _Welds:
             for finding in replayed.findings
         )
         score = "" if worst is None else f"highest score {worst:.3f}"
-        result = ", ".join(text for text in (replayed.reason or "", score, "; ".join(lines)) if text)
+        texts = (replayed.reason or "", replayed.detail or "", score, "; ".join(lines))
+        result = ", ".join(text for text in texts if text)
         spans = ((finding.start_deg, finding.end_deg) for finding in replayed.findings)
         return Weld(name, f"{replayed.verdict}: {result}", strip(self.images[name], ring, spans))

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NotRequired, TypedDict
 
 from station.defects import Reason
-from station.domain import SEGMENTS, Finding, Verdict
+from station.domain import SEGMENTS, Finding, SegmentQuality, Unseen, Verdict
 from station.files.durable import write_whole
 from station.replay.replayed import Circle, Replayed
 
@@ -28,9 +28,23 @@ class FindingEntry(TypedDict):
     area_mm2: float | None
 
 
+class SegmentQualityEntry(TypedDict):
+    """JSON form of the image quality of a segment."""
+
+    mean_dn: float
+    dark_fraction: float
+    saturated_fraction: float
+    contrast: float
+    sharpness: float
+    weld: float
+    visible: float | None
+
+
 class Entry(TypedDict):
     """JSON form of the result for one image: pixels of the input image, angle 0 at +x, clockwise as seen.
 
+    `segments` has None for a segment that was not seen and is not rejected. `unseen` has the cause for each
+    segment that was not seen; it is None, like `segment_quality`, if no segment was looked at.
     An image that could not be inspected has only the keys `verdict`, `reason`, `segments` and `findings`.
     """
 
@@ -38,7 +52,10 @@ class Entry(TypedDict):
     radius: NotRequired[float | None]
     verdict: str
     reason: str | None
-    segments: list[float] | list[None]
+    detail: NotRequired[str | None]
+    segments: list[float | None]
+    unseen: NotRequired[list[str | None] | None]
+    segment_quality: NotRequired[list[SegmentQualityEntry] | None]
     unwrap_start_deg: NotRequired[float]
     direction: NotRequired[str]
     findings: list[FindingEntry]
@@ -61,7 +78,10 @@ def as_entry(replayed: Replayed) -> Entry:
         "radius": None if circle is None else circle.radius_px,
         "verdict": str(replayed.verdict),
         "reason": replayed.reason,
+        "detail": replayed.detail,
         "segments": list(replayed.scores) or [None] * SEGMENTS,
+        "unseen": [None if cause is None else str(cause) for cause in replayed.unseen] or None,
+        "segment_quality": [_quality_entry(quality) for quality in replayed.segment_quality] or None,
         "unwrap_start_deg": 0.0,
         "direction": "cw",
         "findings": [_finding_entry(finding) for finding in replayed.findings],
@@ -81,12 +101,27 @@ def from_entry(name: str, entry: Entry, warnings: Iterable[str] = ()) -> Replaye
         verdict=Verdict(entry["verdict"]),
         reason=entry["reason"],
         circle=None if center is None or radius is None else Circle(center[0], center[1], radius),
-        scores=tuple(score for score in entry["segments"] if score is not None),
+        scores=() if set(entry["segments"]) == {None} else tuple(entry["segments"]),
         findings=tuple(_finding(finding) for finding in entry["findings"]),
         novelty=entry.get("novelty"),
+        detail=entry.get("detail"),
+        unseen=tuple(None if cause is None else Unseen(cause) for cause in entry.get("unseen") or ()),
+        segment_quality=tuple(SegmentQuality(**quality) for quality in entry.get("segment_quality") or ()),
         inspection_ms=entry.get("inspection_ms"),
         warnings=tuple(warnings),
     )
+
+
+def _quality_entry(quality: SegmentQuality) -> SegmentQualityEntry:
+    return {
+        "mean_dn": quality.mean_dn,
+        "dark_fraction": quality.dark_fraction,
+        "saturated_fraction": quality.saturated_fraction,
+        "contrast": quality.contrast,
+        "sharpness": quality.sharpness,
+        "weld": quality.weld,
+        "visible": quality.visible,
+    }
 
 
 def _finding_entry(finding: Finding) -> FindingEntry:
@@ -119,14 +154,16 @@ def write_json(path: Path, results: Iterable[Replayed]) -> None:
 
 
 def write_csv(path: Path, results: Iterable[Replayed]) -> None:
-    """Write name, verdict, reason, ring and highest score of each image as CSV. Raises OSError."""
+    """Write name, verdict, reason, ring, highest score and detail of each image as CSV. Raises OSError."""
     table = io.StringIO(newline="")
     writer = csv.writer(table)
-    writer.writerow(("file", "verdict", "reason", "center_x_px", "center_y_px", "radius_px", "worst_p_nok"))
+    ring_names = ("center_x_px", "center_y_px", "radius_px")
+    writer.writerow(("file", "verdict", "reason", *ring_names, "worst_p_nok", "detail"))
     for replayed in results:
         circle = replayed.circle
         ring = (None,) * 3 if circle is None else (circle.center_x_px, circle.center_y_px, circle.radius_px)
-        writer.writerow((replayed.name, str(replayed.verdict), replayed.reason, *ring, replayed.worst))
+        verdict = str(replayed.verdict)
+        writer.writerow((replayed.name, verdict, replayed.reason, *ring, replayed.worst, replayed.detail))
     _write(path, table.getvalue())
 
 

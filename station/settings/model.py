@@ -11,12 +11,12 @@ from station.defects import kind_named
 from station.errors import SettingsError
 from station.register_windows import COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS
 from station.settings.camera import AnyCamera, ReplaySettings
+from station.settings.quality import Fraction
+from station.settings.quality import QualitySettings as QualitySettings
 from station.settings.section import Section
 
 Port = Annotated[int, Field(ge=1, le=65535)]
 """TCP port."""
-Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
-"""Number from 0 to 1."""
 KindName = Annotated[str, AfterValidator(lambda name: kind_named(name).name)]
 """Name of a known kind of defect."""
 
@@ -27,15 +27,6 @@ class WeldSettings(Section):
     radius_mm: float = Field(default=5.564, gt=0)
     radius_tolerance_mm: float = Field(default=0.156, gt=0)
     um_per_px: float = Field(default=13.0, gt=0)
-
-
-class QualitySettings(Section):
-    """Limits of the image quality gate, which is measured on the strip."""
-
-    min_mean_dn: float = Field(default=12.0, ge=0, le=255)
-    max_dark_share: Fraction = 0.6
-    max_saturated_share: Fraction = 0.35
-    min_sharpness: float = Field(default=0.01, ge=0)
 
 
 class LimitSettings(Section):
@@ -61,6 +52,9 @@ class ModelSettings(Section):
     """Verdict that the self-test must give at the start."""
     self_test_s: float = Field(default=10.0, ge=0.5, le=3600)
     """Idle time between two self-tests, in seconds."""
+    novel: Literal["error", "flag"] = "error"
+    """A part that would be OK but is unlike all training images: not judged (error), or OK with the flag
+    NOVEL (flag)."""
     limits: dict[KindName, LimitSettings] = Field(default_factory=dict)
     """Limits by name of the kind of defect."""
     segment_thresholds: dict[

@@ -52,8 +52,18 @@ class Expected:
     tolerance_px: float = 12.0
 
 
-def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring:
-    """Return the ring of the weld in `image` (height, width) uint8.
+@dataclass(frozen=True, slots=True, eq=False)
+class Located:
+    """A ring, and where on it weld or joint was seen."""
+
+    ring: Ring
+    presence: Array
+    """Presence (84,) float64, 0 to 1, of weld or joint on the circle in each sector, 0 where it lies off the
+    circle; sector i covers [i, i + 1) * 360 / 84 degrees."""
+
+
+def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Located:
+    """Return the ring of the weld in `image` (height, width) uint8, and where weld or joint lies on it.
 
     Raises LocateError if no weld is found or its strip is not wholly in view, ModelError if the network
     fails.
@@ -72,7 +82,8 @@ def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring
         offset, presence = find_sectors(polar_band(image, x, y, radius))
         fit = _robust_fit(offset, presence)
         residual = offset - _BASIS @ fit
-        on_circle = (presence >= MIN_PRESENCE) & (np.abs(residual) <= NEAR_PX)
+        near = np.abs(residual) <= NEAR_PX
+        on_circle = (presence >= MIN_PRESENCE) & near
         support = float(np.mean(on_circle))
         x, y, radius = x + fit[0], y + fit[1], radius + fit[2]
     if support < MIN_SUPPORT:
@@ -92,7 +103,7 @@ def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Ring
     )
     if not in_view(ring, width, height):
         raise LocateError(f"the weld at ({x:.0f}, {y:.0f}) px is not wholly in view", out_of_view=True)
-    return ring
+    return Located(ring, np.where(near, presence, 0.0))
 
 
 def _coarse(image: Image, expected: Expected) -> tuple[float, float, float]:

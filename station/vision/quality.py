@@ -5,7 +5,7 @@ import numpy as np
 
 from station.defects import Reason
 from station.domain import Image, Quality
-from station.settings.model import QualitySettings
+from station.settings.quality import QualitySettings
 
 DARK_DN = 2
 """Maximum grey level of a dark pixel."""
@@ -25,12 +25,16 @@ def measure(strip: Image) -> Quality:
     )
 
 
-def gate(quality: Quality, limits: QualitySettings) -> Reason | None:
-    """Return the first reason why the image must not be judged, or None."""
-    if quality.mean_dn < limits.min_mean_dn or quality.dark_share > limits.max_dark_share:
-        return Reason.TOO_DARK
-    if quality.saturated_share > limits.max_saturated_share:
-        return Reason.TOO_BRIGHT
+def gate(quality: Quality, limits: QualitySettings) -> tuple[Reason, str] | None:
+    """Return the first reason why the image must not be judged, with the numbers as text, or None."""
+    if quality.mean_dn < limits.min_mean_dn:
+        return Reason.TOO_DARK, f"mean grey level {quality.mean_dn:.1f}, limit {limits.min_mean_dn:g}"
+    for reason, share, limit, level in (
+        (Reason.TOO_DARK, quality.dark_share, limits.max_dark_share, f"{DARK_DN} or below"),
+        (Reason.TOO_BRIGHT, quality.saturated_share, limits.max_saturated_share, f"{SATURATED_DN} or above"),
+    ):
+        if share > limit:
+            return reason, f"{share:.0%} of the strip at grey level {level}, limit {limit:.0%}"
     if quality.sharpness < limits.min_sharpness:
-        return Reason.BLURRED
+        return Reason.BLURRED, f"sharpness {quality.sharpness:.4f}, limit {limits.min_sharpness:g}"
     return None

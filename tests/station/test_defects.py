@@ -13,12 +13,13 @@ from station.classify.decision import findings, rejected_kinds, segment_kind
 from station.classify.extent import CELLS
 from station.classify.thresholds import Limit, Thresholds, in_use
 from station.defects import KINDS, DefectKind, Reason, Width, kind_named, kind_of
-from station.domain import SEGMENTS, Ring, SegmentScores
+from station.domain import SEGMENTS, Ring, SegmentScores, Verdict
 from station.errors import SettingsError
 from station.files.installation import SHIPPED_NETWORKS
 from station.inspection import loading
 from station.inspection.loading import prepare
 from station.plc.map.registers import MAP_VERSION
+from station.record_versions import FORMAT
 from station.records import from_json, to_json
 from station.settings.file import load
 from station.settings.model import LimitSettings, for_images
@@ -49,6 +50,8 @@ CODES = {
         "record could not be written": 14,
         "aborted by the PLC": 15,
         "internal error": 16,
+        "segment not seen": 17,
+        "unlike the training images": 18,
     }
 }
 """What a PLC that was programmed against each version of the map reads; entries are added, never changed.
@@ -173,7 +176,7 @@ def test_a_kind_that_no_network_judges_is_said_at_the_start(
     assert "weldgate.onnx does not know image blurred: parts with it can read OK" in caplog.text
 
 
-@pytest.mark.parametrize(("version", "rejected"), [(1, (2, 8, 19)), (2, (19,))])
+@pytest.mark.parametrize(("version", "rejected"), [(1, (2, 8, 19)), (2, (19,)), (3, (2, 8, 19))])
 def test_records_of_older_versions_are_read_with_their_decisions(
     version: int, rejected: tuple[int, ...]
 ) -> None:
@@ -184,12 +187,34 @@ def test_records_of_older_versions_are_read_with_their_decisions(
     raw = json.loads((OLD_RECORDS / f"version_{version}.json").read_text())["inspection"]
     assert [s.nok for s in record.inspection.scores] == [1.0 - s["ok"] for s in raw["scores"]]
     assert [f.length_mm for f in record.inspection.findings] == [f["length_mm"] for f in raw["findings"]]
+    assert record.inspection.unseen == (None,) * SEGMENTS
+    assert not any(record.inspection.invalid)
+    assert record.format == FORMAT
     assert from_json(to_json(record)) == record
+
+
+def test_an_ok_of_the_time_before_segments_were_looked_at_stays_an_ok() -> None:
+    record = from_json((OLD_RECORDS / "version_3_ok.json").read_bytes())
+    assert record.verdict is Verdict.OK
+    assert (record.inspection.segment_quality, record.inspection.detail) == ((), None)
+    assert from_json(to_json(record)) == record
+
+
+def test_a_record_of_today_that_lacks_what_was_seen_is_no_ok() -> None:
+    raw = json.loads((OLD_RECORDS / "version_3_ok.json").read_text())
+    with pytest.raises(ValidationError, match="all seen"):
+        from_json(json.dumps({**raw, "format": FORMAT}).encode())
 
 
 def test_a_damaged_record_of_any_version_is_refused() -> None:
     raw = json.loads((OLD_RECORDS / "version_2.json").read_text())
-    for change in ({"format": 4}, {"inspection": None}, {"provenance": {}}, {"format": 3}):
+    for change in (
+        {"format": 5},
+        {"format": FORMAT},
+        {"inspection": None},
+        {"provenance": {}},
+        {"format": 3},
+    ):
         with pytest.raises(ValidationError):
             from_json(json.dumps({**raw, **change}).encode())
     for text in (b"", b"[]", b"null", b"{"):

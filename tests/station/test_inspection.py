@@ -1,3 +1,4 @@
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -5,11 +6,11 @@ import pytest
 
 from station.classify.onnx import Classifier, Judged, RingNetwork
 from station.defects import Reason
-from station.domain import SEGMENTS, Image, Inspection, Verdict
+from station.domain import SEGMENTS, Image, Inspection, Unseen, Verdict
 from station.errors import ModelError
 from station.inspection.inspector import Inspector
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
-from tests.parts import label_with, labels, ok_inspection
+from tests.parts import label_with, labels, ok_inspection, segment_quality
 
 
 def test_shipped_frames_are_judged_right(frames: dict[str, Image], inspector: Inspector) -> None:
@@ -69,6 +70,8 @@ def test_wrong_exposure_is_not_judged(
     judged = inspector.inspect(image)
     assert judged.verdict is Verdict.ERROR
     assert judged.reason in reason
+    assert judged.detail is not None
+    assert re.search(r"\d", judged.detail), "with the numbers"
 
 
 def test_a_failing_model_is_never_ok(
@@ -86,6 +89,7 @@ def test_a_failing_model_is_never_ok(
     monkeypatch.setattr(Classifier, "__call__", fail)
     judged = inspector.inspect(frames[label_with("OK")["frame"]])
     assert (judged.verdict, judged.reason) == (Verdict.ERROR, Reason.MODEL_FAILED)
+    assert judged.detail == "out of memory"
 
 
 @pytest.mark.parametrize(
@@ -96,11 +100,19 @@ def test_a_failing_model_is_never_ok(
         {"ring": None},
         {"reason": Reason.HOLE},
         {"rejected": (Reason.HOLE,) * 21},
+        {"unseen": ()},
+        {"unseen": (None,) * 20 + (Unseen.COVERED,)},
     ],
 )
 def test_ok_cannot_be_made_from_less_than_21_segments(change: dict[str, object]) -> None:
     with pytest.raises(ValueError, match="21 judged segments"):
         replace(ok_inspection(), **change)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("change", [{"unseen": (None,) * 20}, {"segment_quality": (segment_quality(),)}])
+def test_what_was_seen_is_known_of_all_segments_or_of_none(change: dict[str, object]) -> None:
+    with pytest.raises(ValueError, match="needed 0 or 21"):
+        replace(ok_inspection(), verdict=Verdict.ERROR, **change)  # type: ignore[arg-type]
 
 
 def test_errors_carry_no_scores() -> None:

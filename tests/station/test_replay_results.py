@@ -16,7 +16,18 @@ import station.replay.run
 from station.__main__ import main
 from station.archive.writer import Archive
 from station.defects import Reason
-from station.domain import SEGMENTS, Finding, Frame, Inspection, Origin, Ring, Timing, Verdict
+from station.domain import (
+    SEGMENTS,
+    Finding,
+    Frame,
+    Inspection,
+    Origin,
+    Ring,
+    SegmentQuality,
+    Timing,
+    Unseen,
+    Verdict,
+)
 from station.inspection.inspector import Inspector
 from station.records import Part
 from station.replay.compare import compare
@@ -25,7 +36,7 @@ from station.replay.judge import as_replayed
 from station.replay.replayed import Circle, Replayed
 from station.replay.results import as_entry, from_entry, write_csv, write_json
 from station.settings.model import ArchiveSettings
-from tests.parts import FRAMES, label_with, ok_inspection, provenance
+from tests.parts import FRAMES, label_with, ok_inspection, provenance, segment_quality
 
 NUMBER = st.floats(allow_nan=False)
 MAYBE = st.none() | NUMBER
@@ -39,13 +50,26 @@ FINDING = st.builds(
     width_mm=MAYBE,
     area_mm2=MAYBE,
 )
+QUALITY = st.builds(
+    SegmentQuality,
+    mean_dn=NUMBER,
+    dark_fraction=NUMBER,
+    saturated_fraction=NUMBER,
+    contrast=NUMBER,
+    sharpness=NUMBER,
+    weld=NUMBER,
+    visible=MAYBE,
+)
 INSPECTED = st.builds(
     Replayed,
     name=st.text(),
     verdict=st.sampled_from(Verdict),
     reason=st.none() | st.text(),
     circle=st.none() | st.builds(Circle, NUMBER, NUMBER, NUMBER),
-    scores=st.just(()) | st.tuples(*[NUMBER] * SEGMENTS),
+    scores=st.just(()) | st.tuples(NUMBER, *[MAYBE] * (SEGMENTS - 1)),
+    detail=st.none() | st.text(),
+    unseen=st.just(()) | st.tuples(*[st.none() | st.sampled_from(Unseen)] * SEGMENTS),
+    segment_quality=st.just(()) | QUALITY.map(lambda quality: (quality,) * SEGMENTS),
     findings=st.lists(FINDING, max_size=3).map(tuple),
     novelty=MAYBE,
     inspection_ms=NUMBER,
@@ -59,7 +83,10 @@ JUDGED = Replayed(
     verdict=Verdict.NOK,
     reason="hole",
     circle=Circle(100.5, 99.25, 80.0),
-    scores=(0.75, *[0.125] * 20),
+    scores=(0.75, *[0.125] * 19, None),
+    detail="segment 21: covered (0 % of it visible, limit 50 %)",
+    unseen=(None,) * 20 + (Unseen.COVERED,),
+    segment_quality=(replace(segment_quality(), visible=0.0),) * SEGMENTS,
     findings=(HOLE,),
     novelty=1.5,
     inspection_ms=40.25,
@@ -70,7 +97,21 @@ JUDGED_ENTRY = {
     "radius": 80.0,
     "verdict": "NOK",
     "reason": "hole",
-    "segments": [0.75, *[0.125] * 20],
+    "detail": "segment 21: covered (0 % of it visible, limit 50 %)",
+    "segments": [0.75, *[0.125] * 19, None],
+    "unseen": [None] * 20 + ["covered"],
+    "segment_quality": [
+        {
+            "mean_dn": 100.0,
+            "dark_fraction": 0.0,
+            "saturated_fraction": 0.0,
+            "contrast": 0.3,
+            "sharpness": 0.1,
+            "weld": 1.0,
+            "visible": 0.0,
+        }
+    ]
+    * SEGMENTS,
     "unwrap_start_deg": 0.0,
     "direction": "cw",
     "findings": [
@@ -113,9 +154,9 @@ def test_the_file_has_the_documented_form_byte_for_byte(tmp_path: Path) -> None:
 def test_the_table_has_one_row_per_image(tmp_path: Path) -> None:
     write_csv(tmp_path / "out.csv", [JUDGED, UNREADABLE])
     assert (tmp_path / "out.csv").read_text().splitlines() == [
-        "file,verdict,reason,center_x_px,center_y_px,radius_px,worst_p_nok",
-        "a.png,NOK,hole,100.5,99.25,80.0,0.75",
-        "b.png,ERROR,b.png: not a readable image,,,,",
+        "file,verdict,reason,center_x_px,center_y_px,radius_px,worst_p_nok,detail",
+        'a.png,NOK,hole,100.5,99.25,80.0,0.75,"segment 21: covered (0 % of it visible, limit 50 %)"',
+        "b.png,ERROR,b.png: not a readable image,,,,,",
     ]
 
 
@@ -136,11 +177,14 @@ def test_an_entry_of_another_form_is_an_error(damaged: dict[str, object]) -> Non
 
 
 def test_an_error_of_the_line_without_a_ring_is_inspected_but_has_no_scores() -> None:
-    found = as_replayed("a.png", Inspection.error(Reason.NO_WELD_FOUND, timing=Timing(locate_ms=3.0)), 1.0)
+    line = "no weld found: the best ring scores 0.10, the minimum is 0.22"
+    inspection = Inspection.error(Reason.NO_WELD_FOUND, timing=Timing(locate_ms=3.0), detail=line)
+    found = as_replayed("a.png", inspection, 1.0)
     assert found.problem is None
     assert found.worst is None
     entry = as_entry(found)
     assert (entry["center"], entry["segments"], entry["inspection_ms"]) == (None, [None] * SEGMENTS, 3.0)
+    assert (entry["detail"], entry["unseen"], entry["segment_quality"]) == (line, None, None)
 
 
 def test_the_circle_is_in_pixels_of_the_image_as_it_was_read() -> None:

@@ -1,7 +1,7 @@
 """Report of many records: counts, findings by kind and angle, trends, NOK parts, and what judged them."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,8 +9,9 @@ from station.analysis.report.figures import Bars, ClockFace, Trend, angle_counts
 from station.analysis.report.strip import Gallery, StripImage, Weld, strip
 from station.analysis.report.template import render
 from station.analysis.truth import Errors, errors, interval
+from station.analysis.worst_segment import worst_segment
 from station.archive.reader import Listed
-from station.domain import SEGMENT_DEG, Purpose, Verdict
+from station.domain import SEGMENT_DEG, Inspection, Purpose, Verdict
 from station.errors import RecordError
 from station.records import Record
 
@@ -21,6 +22,15 @@ DOTS = 2000
 """Maximum number of parts in a trend; of more parts only every second, third, ... is drawn."""
 GALLERY = 40
 """Maximum number of NOK parts that are shown with their weld, newest first."""
+SEGMENT_TRENDS = {
+    "mean_dn": "mean brightness (grey levels)",
+    "contrast": "contrast",
+    "sharpness": "sharpness",
+    "saturated_fraction": "saturated fraction",
+    "weld": "fraction with a weld",
+    "visible": "visible fraction",
+}
+"""Values of the worst segment that have a trend."""
 TEMPLATE = Path(__file__).with_name("page.html.j2")
 """Template of the report."""
 
@@ -146,7 +156,7 @@ def _trends(records: Sequence[Record]) -> tuple[Trend, ...]:
     limit = records[-1].provenance.thresholds.lowest
     return (
         trend(
-            [max((scores.nok for scores in i.scores), default=None) for i in inspections],
+            [i.worst for i in inspections],
             bad,
             "highest score of NOK",
             limit,
@@ -158,7 +168,17 @@ def _trends(records: Sequence[Record]) -> tuple[Trend, ...]:
         ),
         trend([None if i.quality is None else i.quality.sharpness for i in inspections], bad, "sharpness"),
         trend([i.novelty for i in inspections], bad, "novelty (distance to the training images)"),
+        *_segment_trends(inspections, bad),
     )
+
+
+def _segment_trends(inspections: Sequence[Inspection], bad: Sequence[bool]) -> Iterator[Trend]:
+    """Yield a trend of the worst segment in each value that is known of any part."""
+    worst = [worst_segment(inspection) for inspection in inspections]
+    for field, words in SEGMENT_TRENDS.items():
+        values = [None if quality is None else getattr(quality, field) for quality in worst]
+        if any(value is not None for value in values):
+            yield trend(values, bad, f"worst segment: {words}")
 
 
 def _nok(records: Sequence[Record], folder: Path) -> Gallery | None:
@@ -171,11 +191,12 @@ def _nok(records: Sequence[Record], folder: Path) -> Gallery | None:
 
 
 def _weld(record: Record, folder: Path) -> Weld:
-    result = "; ".join(
+    found = [
         f"{finding.kind} at {finding.start_deg:.0f}°, {finding.length_mm:.2f} mm long"
         + ("" if finding.area_mm2 is None else f", {finding.area_mm2:.2f} mm²")
         for finding in record.inspection.findings
-    ) or str(record.verdict)
+    ] or [str(record.verdict)]
+    result = "; ".join(found + ([record.inspection.detail] if record.inspection.detail else []))
     text = f"{record.serial}, {record.grabbed_at:%Y-%m-%d %H:%M:%S}: {result}"
     return Weld(str(record.inspection_id), text, _strip(record, folder))
 

@@ -91,6 +91,8 @@ _PART_ACTIONS = {
     Reason.MODEL_FAILED: "restart the station, restore the model file",
     Reason.RECORD_FAILED: "check the archive's disk",
     Reason.INTERNAL: "send the engine's log to the maker",
+    Reason.SEGMENT_NOT_SEEN: "check light, glass and nest for dirt, shadow and glare",
+    Reason.UNLIKE_TRAINING: "check light, focus and surface",
 }
 for _reason, _action in _PART_ACTIONS.items():
     TEXTS[ERROR_NOT_JUDGED + _reason.code] = Explained(str(_reason), _AGAIN + _action)

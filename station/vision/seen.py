@@ -1,0 +1,137 @@
+"""Which segments were seen: bright, sharp, uncovered, with a weld between their borders; pure.
+
+A network that judges a crop of nothing still gives scores. So each segment is looked at before they count.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from station.domain import SEGMENTS, Image, SegmentQuality, Unseen
+from station.settings.quality import QualitySettings
+from station.vision.locate import MIN_PRESENCE
+from station.vision.quality import DARK_DN, SATURATED_DN
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One value of a segment with its limit."""
+
+    cause: Unseen
+    measured: str
+    """Field of SegmentQuality."""
+    end: Literal["min", "max"]
+    """Whether the limit is a minimum or a maximum."""
+    words: str
+    """Text with a place for the value and the limit."""
+
+    @property
+    def limit_name(self) -> str:
+        """Field of QualitySettings."""
+        return f"{self.end}_segment_{self.measured}"
+
+    def holds(self, quality: SegmentQuality, limits: QualitySettings) -> bool:
+        """Return whether the value keeps its limit; a value that is not a number does not."""
+        value, limit = getattr(quality, self.measured), getattr(limits, self.limit_name)
+        if value is None:
+            return True
+        return bool(value >= limit if self.end == "min" else value <= limit)
+
+    def text(self, qualities: Sequence[SegmentQuality], limits: QualitySettings) -> str:
+        """Return the worst value of some segments and its limit as text."""
+        ends = {"min": min, "max": max}
+        worst = ends[self.end](qualities, key=lambda quality: float(getattr(quality, self.measured)))
+        value = getattr(worst, self.measured)
+        return self.words.format(
+            value=value, percent=100 * value, mean=worst.mean_dn, limit=self._limit(limits)
+        )
+
+    def _limit(self, limits: QualitySettings) -> str:
+        limit = float(getattr(limits, self.limit_name))
+        return f"{100 * limit:g} %" if "{percent" in self.words else f"{limit:g}"
+
+
+CHECKS = (
+    Check(
+        Unseen.NO_STRUCTURE,
+        "contrast",
+        "min",
+        "contrast {value:.3f} at grey level {mean:.0f}, limit {limit}",
+    ),
+    Check(Unseen.TOO_DARK, "mean_dn", "min", "mean grey level {value:.1f}, limit {limit}"),
+    Check(
+        Unseen.TOO_DARK,
+        "dark_fraction",
+        "max",
+        f"{{percent:.0f}} % of it at grey level {DARK_DN} or below, limit {{limit}}",
+    ),
+    Check(
+        Unseen.TOO_BRIGHT,
+        "saturated_fraction",
+        "max",
+        f"{{percent:.0f}} % of it at grey level {SATURATED_DN} or above, limit {{limit}}",
+    ),
+    Check(Unseen.BLURRED, "sharpness", "min", "sharpness {value:.3f}, limit {limit}"),
+    Check(Unseen.NO_WELD, "weld", "min", "weld in {percent:.0f} % of it, limit {limit}"),
+    Check(Unseen.COVERED, "visible", "min", "{percent:.0f} % of it visible, limit {limit}"),
+)
+"""All checks of a segment; the first that does not hold is why the segment was not seen."""
+
+
+def measure_segments(
+    crops: Image, presence: NDArray[np.float64], visible: Sequence[float] | None = None
+) -> tuple[SegmentQuality, ...]:
+    """Return the image quality of each of the 21 crops (21, 128, 128) uint8.
+
+    `presence` (84,) float64 is that of weld or joint on the circle by sector, see `station.vision.locate`;
+    `visible` is the uncovered fraction of each segment, or None if no network tells it.
+    """
+    welds = (presence.reshape(SEGMENTS, -1) >= MIN_PRESENCE).mean(axis=1)
+    return tuple(
+        _measured(crop, float(weld), None if visible is None else visible[i])
+        for i, (crop, weld) in enumerate(zip(crops, welds, strict=True))
+    )
+
+
+def _measured(crop: Image, weld: float, visible: float | None) -> SegmentQuality:
+    mean_dn = float(crop.mean())
+    divisor = max(mean_dn, 1.0)
+    laplacian = cv2.Laplacian(crop, cv2.CV_32F)
+    return SegmentQuality(
+        mean_dn=mean_dn,
+        dark_fraction=float(np.mean(crop <= DARK_DN)),
+        saturated_fraction=float(np.mean(crop >= SATURATED_DN)),
+        contrast=float(crop.std() / divisor),
+        sharpness=float(np.sqrt(np.mean(laplacian**2)) / divisor),
+        weld=weld,
+        visible=visible,
+    )
+
+
+def causes(qualities: Sequence[SegmentQuality], limits: QualitySettings) -> tuple[Unseen | None, ...]:
+    """Return why each segment was not seen, None for one that was."""
+    failed = (_first_failed(quality, limits) for quality in qualities)
+    return tuple(None if check is None else check.cause for check in failed)
+
+
+def _first_failed(quality: SegmentQuality, limits: QualitySettings) -> Check | None:
+    return next((check for check in CHECKS if not check.holds(quality, limits)), None)
+
+
+def words(qualities: Sequence[SegmentQuality], limits: QualitySettings) -> str | None:
+    """Return one line with the segments that were not seen, why, and the worst value; None if all were."""
+    found: dict[Check, list[int]] = {}
+    for index, quality in enumerate(qualities):
+        check = _first_failed(quality, limits)
+        if check is not None:
+            found.setdefault(check, []).append(index)
+    lines = (
+        f"segment{'s' * (len(own) > 1)} {', '.join(str(index + 1) for index in own)}: {check.cause} "
+        f"({check.text([qualities[index] for index in own], limits)})"
+        for check, own in found.items()
+    )
+    return "; ".join(lines) or None
