@@ -44,13 +44,14 @@ def window(**changes: Value) -> list[int]:
 class Plc:
     """A block, its clock and a station that answers as set."""
 
-    def __init__(self, accept_simulated: bool = False) -> None:
+    def __init__(self, accept_simulated: bool = False, accept_novel: bool = False) -> None:
         self.block, self.now_s, self.beat = Block(), 0.0, 0
         v = self.v = self.block.v
-        v.Serial, v.Crc, v.AcceptSimulated, v.WindowTime = (
+        v.Serial, v.Crc, v.AcceptSimulated, v.AcceptNovel, v.WindowTime = (
             pack(BY_NAME["PART_SERIAL"], "CELL-1"),
             77,
             accept_simulated,
+            accept_novel,
             4.0,
         )
 
@@ -112,6 +113,7 @@ def test_a_part_from_start_to_done() -> None:
         ({"STATUS": GOOD["STATUS"] | Status.FAILURE}, "failure"),  # type: ignore[operator]
         ({"STATUS": GOOD["STATUS"] | Status.FUNCTION_CHECK}, "function check"),  # type: ignore[operator]
         ({"FLAGS": int(Flags.SIMULATED)}, "emulated camera"),
+        ({"FLAGS": int(Flags.NOVEL)}, "unlike the training images"),
     ],
 )
 def test_each_point_alone_refuses(changes: dict[str, Value], said: str) -> None:
@@ -138,6 +140,14 @@ def test_the_first_read_alone_proves_no_heartbeat() -> None:
 
 def test_simulated_pictures_pass_only_where_wanted() -> None:
     assert refused(window(FLAGS=int(Flags.SIMULATED)), accept_simulated=True) is None
+
+
+def test_a_part_unlike_the_training_images_passes_only_where_wanted() -> None:
+    flags = int(Flags.NOVEL)
+    assert refused(window(FLAGS=flags), accept_novel=True) is None
+    both = int(Flags.NOVEL | Flags.SIMULATED)
+    for simulated, novel in ((False, True), (True, False)):
+        assert refused(window(FLAGS=both), accept_simulated=simulated, accept_novel=novel) is not None
 
 
 def test_a_master_never_passes_and_asks_for_the_check() -> None:

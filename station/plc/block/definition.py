@@ -74,6 +74,7 @@ POINTS: tuple[tuple[str, str], ...] = (
         f"NOT {bit('STATUS', Status.FAILURE | Status.FUNCTION_CHECK)}",
     ),
     ("picture of an emulated camera", f"AcceptSimulated OR NOT {bit('FLAGS', Flags.SIMULATED)}"),
+    ("picture unlike the training images", f"AcceptNovel OR NOT {bit('FLAGS', Flags.NOVEL)}"),
 )
 """Acceptance rule: text of each point's refusal, and its condition. A part passes if all hold at once."""
 NOT_READY, NO_RESULT = len(POINTS) + 1, len(POINTS) + 2
@@ -114,6 +115,12 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("input", "Recipe", "UINT", "expected ACTIVE_RECIPE", initial="1"),
     Variable("input", "Crc", "WORD", "released CONFIG_CRC"),
     Variable("input", "AcceptSimulated", "BOOL", "TRUE only in a demonstration without a camera"),
+    Variable(
+        "input",
+        "AcceptNovel",
+        "BOOL",
+        "TRUE only with model.novel = flag: let OK parts pass that are unlike the training images",
+    ),
     Variable("input", "WindowTime", "TIME", "the result must come within", initial="T#4s"),
     Variable(
         "input", "Extra", "WORD", "further bits of CONTROL, as CLEAR_ERROR, EXEC_COMMAND, SET_OFFLINE, ABORT"
