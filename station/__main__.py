@@ -88,7 +88,7 @@ def _parser() -> argparse.ArgumentParser:
         "--um-per-px",
         type=float,
         metavar="UM",
-        help="set the scale of the images in µm per pixel (default: the scale in the settings)",
+        help="set the scale of the images in µm per pixel, 9 to 65 (default: the scale in the settings)",
     )
     replay.add_argument(
         "--processes", type=int, metavar="N", help="use this many processes (default: one per core)"

@@ -27,6 +27,10 @@ STRIP_ROWS = SEGMENT_PX
 """Height of the strip in pixels."""
 SEGMENT_DEG = 360.0 / SEGMENTS
 """Angle of one segment in degrees."""
+NETWORK_UM_PER_PX = 13.0
+"""Scale of the networks' training images in µm per pixel: the height of a row of every strip."""
+TRAINED_UM_PER_PX = (9.0, 65.0)
+"""Lowest and highest scale, in µm per pixel, of the images whose strips the networks are trained for."""
 
 
 class Purpose(StrEnum):

@@ -12,7 +12,7 @@ from datetime import datetime
 from pydantic import TypeAdapter
 
 from station.classify.thresholds import Thresholds
-from station.domain import Inspection, Origin, Purpose, Verdict
+from station.domain import NETWORK_UM_PER_PX, Inspection, Origin, Purpose, Verdict
 from station.record_versions import FORMAT, OLD, upgraded
 
 
@@ -30,6 +30,9 @@ class Provenance:
     recipe: int = 1
     limits_hash: str = ""
     """SHA-256 of the settings of weld and quality gate, on which a verdict depends too."""
+    um_per_px: float = NETWORK_UM_PER_PX
+    """Scale of the frame, at which its strip was cut. Older records lack it: their strips have rows of one
+    frame pixel, whatever the scale was."""
 
     @property
     def limits(self) -> str:

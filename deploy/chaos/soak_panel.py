@@ -155,7 +155,8 @@ def _made(settings: Settings) -> tuple[Record, tuple[list[StatusEvent], PartEven
         record_ms=5.0,
         publish_ms=1.0,
     )
-    return record, ([status] * STATUSES, part, make_preview(1, image, inspection.ring))
+    preview = make_preview(1, image, inspection.ring, um_per_px=record.provenance.um_per_px)
+    return record, ([status] * STATUSES, part, preview)
 
 
 def _live(milliseconds: int) -> None:

@@ -57,8 +57,9 @@ def read_lot(folder: Path) -> list[LabelledStrip]:
     """
     strips, outside = [], []
     for label, image in frames(folder, read_labels(folder)):
+        ring = Ring(label.center_x_px, label.center_y_px, label.radius_px, 1.0)
         try:
-            strip = unwrap(image, Ring(label.center_x_px, label.center_y_px, label.radius_px, 1.0))
+            strip = unwrap(image, ring, um_per_px=label.um_per_px)
         except LocateError as error:
             outside.append(f"{label.name}: {error}; correct its label")
             continue

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from models.data.crops import OK
 from models.errors import LearningError, listed
 from station.classify.onnx import CLASSES
+from station.domain import NETWORK_UM_PER_PX, TRAINED_UM_PER_PX
 from station.errors import ImageError
 from station.files.image import read_image
 
@@ -44,6 +45,8 @@ class LabelledFrame:
     verdict: str
     """OK or NOK."""
     defects: tuple[Defect, ...]
+    um_per_px: float = NETWORK_UM_PER_PX
+    """Scale of the frame."""
 
 
 def read_labels(folder: Path) -> list[LabelledFrame]:
@@ -122,6 +125,10 @@ def _checked(name: str, item: dict) -> LabelledFrame:  # type: ignore[type-arg] 
     radius = item["radius"]
     if not (float(radius) > 0 and np.isfinite([x, y, radius]).all()):
         raise _Wrong("centre and radius must be numbers")
+    low, high = TRAINED_UM_PER_PX
+    um_per_px = float(item.get("um_per_px", NETWORK_UM_PER_PX))
+    if not low <= um_per_px <= high:
+        raise _Wrong(f"um_per_px {um_per_px:g} must be {low:g} to {high:g}")
     defects = tuple(_defect(entry) for entry in item["defects"])
     verdict = item["verdict"]
     if verdict not in ("OK", "NOK") or (verdict == "NOK") != bool(defects):
@@ -133,6 +140,7 @@ def _checked(name: str, item: dict) -> LabelledFrame:  # type: ignore[type-arg] 
         radius_px=float(radius),
         verdict=str(verdict),
         defects=defects,
+        um_per_px=um_per_px,
     )
 
 

@@ -19,11 +19,11 @@ from models.evaluation.measures import Counts, count
 from station.classify.extent import CELL_PX, CELLS, LEVEL, Map, extents
 from station.classify.onnx import CLASSES, Classifier, Judged
 from station.defects import DefectKind
+from station.domain import NETWORK_UM_PER_PX
 
 BATCH = 256
 PAD = 3
 """Empty cells on both sides, so that an area does not close over the borders of a single crop."""
-UM_PER_PX = 13.0
 MAX_SIDE = CELLS * CELL_PX
 Row = dict[str, Any]
 """An image, an annotation or a category in COCO's format."""
@@ -58,7 +58,7 @@ def boxes(maps: Map, probabilities: Mapping[DefectKind, float]) -> list[Box]:
     found = []
     for values, (kind, probability) in zip(maps, probabilities.items(), strict=True):
         padded = np.pad(values, ((0, 0), (PAD, PAD)))
-        for extent in extents(padded, kind.joins_mm * 1000 / UM_PER_PX):
+        for extent in extents(padded, kind.joins_mm * 1000 / NETWORK_UM_PER_PX):
             left, right = (
                 float(np.clip(v - PAD * CELL_PX, 0, MAX_SIDE)) for v in (extent.start_px, extent.end_px)
             )

@@ -101,7 +101,7 @@ def evaluate_lot(lot: Path, inspector: Inspector, progress: Callable[[], None] =
     labels = read_labels(lot)
     for _ in frames(lot, labels):
         pass  # frames that cannot be read are reported before the work begins
-    parts, crops = [], _Collected()
+    parts, crops = [], _Collected(inspector.um_per_px)
     for label, image in frames(lot, labels):
         judged = inspector.inspect(image)
         shown = [_label_of_segment(label.defects, i) for i in range(SEGMENTS)]
@@ -131,7 +131,8 @@ def _farthest(crops: list[Worst]) -> list[Worst]:
 class _Collected:
     """Collects the judged segments; keeps only the images of the worst."""
 
-    def __init__(self) -> None:
+    def __init__(self, um_per_px: float) -> None:
+        self._um_per_px = um_per_px
         self._rows: list[tuple[tuple[float, ...], int, int]] = []
         self._worst: list[Worst] = []
         self._unjudged = 0
@@ -141,7 +142,7 @@ class _Collected:
         if judged.ring is None or not judged.scores:
             self._unjudged += sum(label > OK for label in labels)
             return
-        images = segments(unwrap(image, judged.ring))
+        images = segments(unwrap(image, judged.ring, um_per_px=self._um_per_px))
         rows = zip(judged.scores, labels, judged.rejected, strict=True)
         for index, (scores, label, reason) in enumerate(rows):
             if judged.invalid[index]:

@@ -211,7 +211,8 @@ def _dataset(
             yield entry.path, "its frame was deleted"
             continue
         try:
-            strip = unwrap(read_image(folder / str(record.frame_file)), record.inspection.ring)
+            frame, um_per_px = read_image(folder / str(record.frame_file)), record.provenance.um_per_px
+            strip = unwrap(frame, record.inspection.ring, um_per_px=um_per_px)
         except (ImageError, LocateError) as error:
             yield entry.path, str(error)
             continue

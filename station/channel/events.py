@@ -81,6 +81,8 @@ class Preview:
     frame_jpeg: bytes
     strip_jpeg: bytes
     """The strip; empty if no ring was found."""
+    um_per_px: float
+    """Scale of the frame."""
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(ser_json_bytes="base64", val_json_bytes="base64")
 
 

@@ -8,7 +8,16 @@ from operator import add
 from station.classify.extent import Extent, Map, extents, whole_map
 from station.classify.thresholds import Thresholds
 from station.defects import DefectKind, Reason, Width
-from station.domain import SEGMENT_DEG, SEGMENTS, STRIP_COLUMNS, STRIP_ROWS, Finding, Ring, SegmentScores
+from station.domain import (
+    NETWORK_UM_PER_PX,
+    SEGMENT_DEG,
+    SEGMENTS,
+    STRIP_COLUMNS,
+    STRIP_ROWS,
+    Finding,
+    Ring,
+    SegmentScores,
+)
 
 DEG_PER_PX = 360.0 / STRIP_COLUMNS
 """Angle of one column of the strip."""
@@ -74,7 +83,7 @@ def findings(
     for channel, kind in zip(whole_map(maps), mapped, strict=True):
         if kind not in kinds:
             continue
-        for extent in extents(channel, kind.joins_mm * 1000 / um_per_px):
+        for extent in extents(channel, kind.joins_mm * 1000 / NETWORK_UM_PER_PX):
             if any(kinds[index] == kind for index in extent.segments):
                 score = max(scores[index].nok for index in extent.segments)
                 found.append(_measured(kind, extent, score, ring=ring, um_per_px=um_per_px))
@@ -132,8 +141,9 @@ def _reaches(finding: Finding, start_deg: float, end_deg: float) -> bool:
 
 def _measured(kind: DefectKind, extent: Extent, score: float, *, ring: Ring, um_per_px: float) -> Finding:
     """Return an area of the map as a finding; its length is measured at the radius of the defect."""
-    mm_per_px = um_per_px / 1000
-    radius_px = ring.radius_px + STRIP_ROWS / 2 - (extent.top_px + extent.bottom_px) / 2
+    mm_per_px = NETWORK_UM_PER_PX / 1000
+    ring_px = ring.radius_px * (um_per_px / NETWORK_UM_PER_PX)  # in rows of the strip, as the extent is
+    radius_px = ring_px + STRIP_ROWS / 2 - (extent.top_px + extent.bottom_px) / 2
     columns = extent.end_px - extent.start_px
     stretch = radius_px * 2 * pi / STRIP_COLUMNS
     width_px = (

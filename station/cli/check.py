@@ -8,11 +8,13 @@ from pathlib import Path
 from station.archive.room import Room
 from station.archive.writer import Archive
 from station.camera.choose import make_camera
+from station.domain import TRAINED_UM_PER_PX
 from station.errors import WeldgateError
 from station.inspection.loading import prepare
 from station.plc.line import make_line
 from station.settings.file import load
-from station.settings.model import Settings
+from station.settings.model import Settings, for_recipe
+from station.settings.view import check_view
 
 
 def check(path: Path) -> Iterator[tuple[str, str | None]]:
@@ -23,6 +25,7 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
         yield "settings", str(error)
         return
     yield "settings", None
+    yield _scale(settings), None
     for name, probe in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC", _plc)):
         try:
             probe(settings)
@@ -30,6 +33,14 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
             yield name, str(error)
         else:
             yield name, None
+
+
+def _scale(settings: Settings) -> str:
+    """Return the scale of the images of all recipes, next to what the networks are trained for."""
+    recipes = sorted({1, *settings.recipes})
+    scales = sorted({for_recipe(settings, number).weld.um_per_px for number in recipes})
+    low, high = TRAINED_UM_PER_PX
+    return f"scale {' and '.join(f'{scale:g}' for scale in scales)} µm/px, trained for {low:g} to {high:g}"
 
 
 def _model(settings: Settings) -> None:
@@ -59,6 +70,9 @@ def _camera(settings: Settings) -> None:
     camera = make_camera(settings.camera)
     try:
         camera.open()
+        if settings.camera.size_px is None:
+            height_px, width_px = camera.grab().image.shape
+            check_view(settings, (width_px, height_px))
     finally:
         camera.close()
 

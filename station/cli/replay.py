@@ -19,7 +19,7 @@ from station.replay.report import write_page
 from station.replay.results import write_csv, write_json
 from station.replay.run import replay
 from station.settings.file import load
-from station.settings.model import Settings, for_images, for_recipe
+from station.settings.model import Settings, for_images, for_recipe, for_scale
 
 
 def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
@@ -30,9 +30,6 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     """
     images = sources(arguments.paths)
     settings = _settings(arguments, shipped)
-    um_per_px = settings.weld.um_per_px if arguments.um_per_px is None else arguments.um_per_px
-    if not 1 <= um_per_px <= 200:
-        raise SettingsError(f"the scale must be 1 to 200 µm/px: --um-per-px {um_per_px:g}")
     processes = os.cpu_count() or 1 if arguments.processes is None else arguments.processes
     if not 1 <= processes <= 256:
         raise SettingsError(f"the number of processes must be 1 to 256: --processes {processes}")
@@ -42,8 +39,7 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
             raise SettingsError(f"results cannot be written: {target}. Name a file in a writable folder")
     part = None if arguments.json is None else arguments.json.with_name(arguments.json.name + ".part")
     judge = load_inspector(settings)
-    factor = um_per_px / settings.weld.um_per_px
-    judged = replay(images, settings, judge=judge, factor=factor, processes=processes, part=part)
+    judged = replay(images, settings, judge=judge, processes=processes, part=part)
     silent = not sys.stderr.isatty()
     unordered, problems, bad = dict[str, Replayed](), list[str](), 0
     for replayed in track(judged, description="replay", total=len(images), disable=silent, transient=True):
@@ -92,6 +88,8 @@ def _settings(arguments: argparse.Namespace, shipped: Path) -> Settings:
     settings = for_recipe(
         for_images(shipped) if arguments.settings is None else load(arguments.settings), arguments.recipe
     )
+    if arguments.um_per_px is not None:
+        settings = for_scale(settings, arguments.um_per_px)
     if arguments.model is None:
         return settings
     return settings.model_copy(

@@ -177,7 +177,8 @@ class Procedure:
         self._listener.event(event)
         if frame is not None:
             inspection_id, ring = event.record.inspection_id, event.record.inspection.ring
-            self._listener.preview(make_preview(inspection_id, frame.image, ring))
+            um_per_px = event.record.provenance.um_per_px
+            self._listener.preview(make_preview(inspection_id, frame.image, ring, um_per_px=um_per_px))
 
 
 def _judge(grab: Grab, inspector: Inspector) -> Inspection:
@@ -185,7 +186,10 @@ def _judge(grab: Grab, inspector: Inspector) -> Inspection:
     if grab.frame is None:
         return Inspection.error(grab.reason or Reason.INTERNAL, timing=timing)
     try:
-        return inspector.inspect(grab.frame.image, grab.grab_ms)
+        inspection = inspector.inspect(grab.frame.image, grab.grab_ms)
+        if inspection.ring is None and (problem := inspector.view_problem(grab.frame.image)):
+            log.error("%s: %s", grab.frame.source, problem)
+        return inspection
     except Exception:  # the PLC needs an answer: a part with any fault is "not judged"
         log.exception("inspection failed")
         return Inspection.error(Reason.INTERNAL, timing=timing)

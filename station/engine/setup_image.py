@@ -37,8 +37,8 @@ def take_setup_image(
     try:
         ring = inspector.locate(image)
     except (LocateError, ModelError) as error:
-        problem = str(error)
-    measured = image if ring is None else unwrap(image, ring)
+        problem = inspector.view_problem(image) or str(error)
+    measured = image if ring is None else unwrap(image, ring, um_per_px=inspector.um_per_px)
     quality = measure(measured)
     counts, _ = np.histogram(measured, BINS, (0, 256))
     event = SetupImageEvent(
@@ -51,4 +51,4 @@ def take_setup_image(
         ring=ring,
         problem=problem,
     )
-    return event, make_preview(SETUP_IMAGE, image, ring)
+    return event, make_preview(SETUP_IMAGE, image, ring, um_per_px=inspector.um_per_px)

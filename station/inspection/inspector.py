@@ -11,14 +11,16 @@ from station.classify.drift import read_reference
 from station.classify.onnx import APPEARANCE_SIZE, Classifier, RingNetwork
 from station.classify.thresholds import in_use
 from station.defects import Reason
-from station.domain import Image, Inspection, Ring, SegmentScores, Timing, Verdict
+from station.domain import NETWORK_UM_PER_PX, Image, Inspection, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
 from station.inspection.verdict import Novelty, decide
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
-from station.vision.locate import Expected, locate
+from station.settings.view import view_problem
+from station.vision.locate import Expected, Located, locate
 from station.vision.quality import gate, measure
+from station.vision.rescale import from_network_scale, to_network_scale
 from station.vision.seen import causes, measure_segments
-from station.vision.unwrap import segments, unwrap
+from station.vision.unwrap import in_view, segments, unwrap
 
 APPEARANCE_DECIMALS = 3
 """Decimals to which a part's appearance features, which are about 1, are rounded."""
@@ -46,16 +48,36 @@ class Inspector:
         self._weld = weld
         self._quality = quality
         self._novel = model.novel
-        px_per_mm = 1000.0 / weld.um_per_px
+        px_per_mm = 1000.0 / NETWORK_UM_PER_PX
         self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
         self.card = card = classifier.card
         path = model.reference_path
         self.reference = None if path is None else read_reference(path, card.file_hash, APPEARANCE_SIZE)
         self.thresholds = in_use(card.thresholds, model.limits, model.segment_thresholds)
 
+    @property
+    def um_per_px(self) -> float:
+        """Scale of the images that are judged."""
+        return self._weld.um_per_px
+
+    def view_problem(self, image: Image) -> str | None:
+        """Return why the weld cannot be wholly in view in an image of this size, or None if it can be."""
+        height, width = image.shape
+        return view_problem(self._weld, width, height)
+
     def locate(self, image: Image) -> Ring:
         """Return the ring of the weld in `image` (height, width) uint8. Raises LocateError, ModelError."""
-        return locate(image, self._expected, self._ring_network).ring
+        return self._located(image).ring
+
+    def _located(self, image: Image) -> Located:
+        """Return the ring in pixels of the image, and where weld or joint lies on it."""
+        scaled = to_network_scale(image, um_per_px=self.um_per_px)
+        found = locate(scaled, self._expected, self._ring_network)
+        ring = from_network_scale(found.ring, um_per_px=self.um_per_px)
+        height, width = image.shape
+        if not in_view(ring, width, height, um_per_px=self.um_per_px):
+            raise LocateError("the weld is not wholly in view", out_of_view=True)
+        return replace(found, ring=ring)
 
     def is_novel(self, judged: Inspection) -> bool:
         """Return whether a part differs from all training images, so that its verdict is less reliable."""
@@ -65,7 +87,7 @@ class Inspector:
         """Return the inspection of `image` (height, width) uint8; OK only if all 21 were seen and judged."""
         start = perf_counter()
         try:
-            located = locate(image, self._expected, self._ring_network)
+            located = self._located(image)
         except LocateError as error:
             reason = Reason.WELD_OUT_OF_VIEW if error.out_of_view else Reason.NO_WELD_FOUND
             return Inspection.error(reason, timing=Timing(grab_ms, _ms(start)), detail=str(error))
@@ -74,7 +96,7 @@ class Inspector:
                 Reason.MODEL_FAILED, timing=Timing(grab_ms, _ms(start)), detail=str(error)
             )
         ring, locate_ms, start = located.ring, _ms(start), perf_counter()
-        strip = unwrap(image, ring)
+        strip = unwrap(image, ring, um_per_px=self.um_per_px)
         crops = segments(strip)
         quality = measure(strip)
         seen = measure_segments(crops, located.presence)
@@ -96,7 +118,7 @@ class Inspector:
             scores = self._average_mirrored(crops, judged.scores)
         except ModelError as error:
             return replace(not_judged, detail=str(error))
-        um_per_px = self._weld.um_per_px
+        um_per_px = self.um_per_px
         found = findings(scores, judged.maps, judged.mapped, self.thresholds, ring=ring, um_per_px=um_per_px)
         rejected = rejected_kinds(scores, found, self.thresholds)
         novelty = Novelty(judged.novelty, self.card.novelty_limit, self._novel)

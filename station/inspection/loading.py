@@ -70,6 +70,7 @@ def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
         limits_hash=hashlib.sha256(
             settings.model_dump_json(include={"weld": True, "quality": True, "model": {"novel"}}).encode()
         ).hexdigest(),
+        um_per_px=settings.weld.um_per_px,
     )
     return inspector, provenance
 

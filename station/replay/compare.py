@@ -36,7 +36,8 @@ class Comparison:
     """Names of the records among these that do not agree."""
     flips: tuple[Flip, ...]
     problems: tuple[str, ...]
-    """One line for each record that was not compared, because it cannot be read or its frame was modified."""
+    """One line for each record that was not compared, because it cannot be read, its frame was modified, or
+    it was judged at another scale."""
 
     def lines(self) -> list[str]:
         """Return the comparison as lines for the terminal."""
@@ -65,6 +66,8 @@ def compare(sources: Sequence[Source], results: Mapping[str, Replayed], judge: P
         if source.archive is None or source.row is None:
             continue
         record, problem = read_record(source.archive, source.row)
+        if record is not None and problem is None:
+            problem = _scale_problem(record.provenance.um_per_px, judge.um_per_px)
         if record is None or problem is not None:
             problems.append(f"{source.path.parent / Path(source.row.record_file).name}: {problem}")
             continue
@@ -91,6 +94,15 @@ def compare(sources: Sequence[Source], results: Mapping[str, Replayed], judge: P
         not_alike=tuple(not_alike),
         flips=tuple(flips),
         problems=tuple(problems),
+    )
+
+
+def _scale_problem(taken_um_per_px: float, judged_um_per_px: float) -> str | None:
+    if taken_um_per_px == judged_um_per_px:
+        return None
+    return (
+        f"taken at {taken_um_per_px:g} µm/px, but judged as {judged_um_per_px:g} µm/px; "
+        "judge it again at the scale at which it was taken"
     )
 
 

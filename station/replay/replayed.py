@@ -7,7 +7,7 @@ from station.domain import Finding, SegmentQuality, Unseen, Verdict
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """Ring in pixels of the image as it was read, before it was scaled."""
+    """Ring in pixels of the image."""
 
     center_x_px: float
     center_y_px: float

@@ -67,7 +67,8 @@ def write_page(
     problems: Sequence[str],
 ) -> Path:
     """Write `folder`/report.html and return its path. Raises OSError."""
-    welds = _Welds({source.name: source.path for source in sources}, results)
+    images = {source.name: source.path for source in sources}
+    welds = _Welds(images, results, judge.um_per_px)
     verdicts = Counter(replayed.verdict for replayed in results.values())
     found = None if truth is None else _errors(truth, results)
     page = ReplayPage(
@@ -121,6 +122,7 @@ def _wrong(found: Errors, welds: "_Welds") -> tuple[Gallery, ...]:
 class _Welds:
     images: Mapping[str, Path]
     results: Mapping[str, Replayed]
+    um_per_px: float
 
     def galleries(self, *titled: tuple[str, Sequence[str]]) -> tuple[Gallery, ...]:
         """Return a gallery for each title that has names."""
@@ -142,4 +144,5 @@ class _Welds:
         texts = (replayed.reason or "", replayed.detail or "", score, "; ".join(lines))
         result = ", ".join(text for text in texts if text)
         spans = ((finding.start_deg, finding.end_deg) for finding in replayed.findings)
-        return Weld(name, f"{replayed.verdict}: {result}", strip(self.images[name], ring, spans))
+        image = strip(self.images[name], ring, spans, um_per_px=self.um_per_px)
+        return Weld(name, f"{replayed.verdict}: {result}", image)

@@ -33,17 +33,16 @@ def replay(
     settings: Settings,
     *,
     judge: tuple[Inspector, Provenance],
-    factor: float,
     processes: int,
     part: Path | None,
 ) -> Iterator[Replayed]:
-    """Yield a result for each image as soon as it is judged; images are scaled by `factor` first.
+    """Yield a result for each image as soon as it is judged.
 
     `judge` was loaded from the settings. `part` is the file that makes an interrupted run resumable; the
     caller deletes it. Raises ModelError.
     """
     inspector, provenance = judge
-    key = hashlib.sha256(f"{asdict(provenance)} {factor}".encode()).hexdigest()
+    key = hashlib.sha256(str(asdict(provenance)).encode()).hexdigest()
     known = {} if part is None else _known(part, key)
     todo = []
     for source in sources:
@@ -55,7 +54,7 @@ def replay(
     with ExitStack() as stack:
         file = None if part is None else stack.enter_context(_opened(part, key, bool(known)))
         single = processes == 1 or len(todo) < 2 * processes
-        judged = _single(todo, inspector, factor) if single else _pooled(todo, settings, factor, processes)
+        judged = _single(todo, inspector) if single else _pooled(todo, settings, processes)
         for mark, replayed in judged:
             if file is not None and replayed.problem is None:
                 file.write(_line(mark, replayed))
@@ -69,19 +68,19 @@ Judged = tuple[str, Replayed]
 """Mark of an image with its result."""
 
 
-def _single(todo: list[Marked], inspector: Inspector, factor: float) -> Iterator[Judged]:
+def _single(todo: list[Marked], inspector: Inspector) -> Iterator[Judged]:
     for source, mark in todo:
-        yield mark, judge_image(inspector, source, factor)
+        yield mark, judge_image(inspector, source)
 
 
-def _pooled(todo: list[Marked], settings: Settings, factor: float, processes: int) -> Iterator[Judged]:
+def _pooled(todo: list[Marked], settings: Settings, processes: int) -> Iterator[Judged]:
     model = settings.model.model_copy(update={"threads": 1, "reference_path": None})
     own = settings.model_copy(update={"model": model})
     waiting: list[tuple[str, Future[Replayed]]] = []
     with ProcessPoolExecutor(processes, get_context("spawn"), _begin, (own,)) as pool:
         try:
             for source, mark in todo:
-                waiting.append((mark, pool.submit(_judge, source, factor)))
+                waiting.append((mark, pool.submit(_judge, source)))
                 if len(waiting) >= AHEAD * processes:
                     mark, future = waiting.pop(0)
                     yield mark, future.result()
@@ -116,10 +115,10 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _judge(source: Source, factor: float) -> Replayed:
+def _judge(source: Source) -> Replayed:
     if _inspector is None:
         raise RuntimeError("the process has no inspector")
-    return judge_image(_inspector, source, factor)
+    return judge_image(_inspector, source)
 
 
 def _mark(source: Source) -> str:

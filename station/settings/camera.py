@@ -28,6 +28,11 @@ class CameraSettings(Section):
         return (self.kind,)
 
     @property
+    def size_px(self) -> tuple[int, int] | None:
+        """Width and height of the images; None if only the images themselves show them."""
+        return None
+
+    @property
     def adjustable(self) -> tuple[float, float] | None:
         """Exposure in µs and gain in dB if `exposure_us` and `gain_db` can be adjusted, else None."""
         return None
@@ -56,6 +61,11 @@ class PylonSettings(CameraSettings):
     def identity(self) -> tuple[str, ...]:
         """Make, device class and serial number."""
         return self.kind, self.device_class, self.serial
+
+    @property
+    def size_px(self) -> tuple[int, int] | None:
+        """Width and height of the images."""
+        return self.width_px, self.height_px
 
     @property
     def adjustable(self) -> tuple[float, float] | None:

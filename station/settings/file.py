@@ -11,6 +11,7 @@ from station.errors import SettingsError
 from station.settings.adjustments import laid_over, path_of, read
 from station.settings.model import Settings, for_recipe
 from station.settings.renamed import with_new_names
+from station.settings.view import check_view
 
 
 def load(path: Path, changes: dict[str, Any] | None = None) -> Settings:
@@ -40,12 +41,14 @@ def load(path: Path, changes: dict[str, Any] | None = None) -> Settings:
         settings = Settings.model_validate(raw)
         for number in settings.recipes:
             for_recipe(settings, number)
-    except ValidationError as error:
+        check_view(settings, settings.camera.size_px)
+    except (ValidationError, SettingsError) as error:
+        text = _message(error) if isinstance(error, ValidationError) else str(error)
         if changes is not None:
-            raise SettingsError(_message(error)) from None
+            raise SettingsError(text) from None
         name = path_of(path).name
         also = f" (with the changes made at the station: {name}; delete it to undo them)" if overrides else ""
-        raise SettingsError(f"{path}{also}: {_message(error)}") from None
+        raise SettingsError(f"{path}{also}: {text}") from None
     return _anchored(settings, path.resolve().parent)
 
 

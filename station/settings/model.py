@@ -5,9 +5,10 @@ from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from station.defects import kind_named
+from station.domain import NETWORK_UM_PER_PX, TRAINED_UM_PER_PX
 from station.errors import SettingsError
 from station.register_windows import COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS
 from station.settings.camera import AnyCamera, ReplaySettings
@@ -21,12 +22,22 @@ KindName = Annotated[str, AfterValidator(lambda name: kind_named(name).name)]
 """Name of a known kind of defect."""
 
 
+def _trained(um_per_px: float) -> float:
+    low, high = TRAINED_UM_PER_PX
+    if not low <= um_per_px <= high:
+        raise ValueError(
+            f"the networks are trained for {low:g} to {high:g} µm/px, not for {um_per_px:g}; "
+            "use another lens, or train networks for it"
+        )
+    return um_per_px
+
+
 class WeldSettings(Section):
-    """Size of the weld in mm, and scale of the image."""
+    """Size of the weld in mm, and scale of the images."""
 
     radius_mm: float = Field(default=5.564, gt=0)
     radius_tolerance_mm: float = Field(default=0.156, gt=0)
-    um_per_px: float = Field(default=13.0, gt=0)
+    um_per_px: Annotated[float, AfterValidator(_trained)] = NETWORK_UM_PER_PX
 
 
 class LimitSettings(Section):
@@ -250,6 +261,16 @@ def for_recipe(settings: Settings, number: int) -> Settings:
     for name, section in (("weld", settings.weld), ("quality", settings.quality), ("model", settings.model)):
         sections[name] = type(section).model_validate(merged(section.model_dump(), getattr(changes, name)))
     return settings.model_copy(update=sections)
+
+
+def for_scale(settings: Settings, um_per_px: float) -> Settings:
+    """Return the settings for images of this scale. Raises SettingsError if no network is trained for it."""
+    try:
+        weld = WeldSettings.model_validate({**settings.weld.model_dump(), "um_per_px": um_per_px})
+    except ValidationError as error:
+        text = error.errors()[0]["msg"].removeprefix("Value error, ")
+        raise SettingsError(f"scale of the images: {text}") from None
+    return settings.model_copy(update={"weld": weld})
 
 
 def merged(values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

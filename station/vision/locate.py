@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from station.domain import Image, Ring
+from station.domain import NETWORK_UM_PER_PX, Image, Ring
 from station.errors import LocateError
 from station.vision.polar import SECTORS, polar_band
 from station.vision.unwrap import in_view
@@ -65,6 +65,8 @@ class Located:
 def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Located:
     """Return the ring of the weld in `image` (height, width) uint8, and where weld or joint lies on it.
 
+    The scale of the image is 13 µm/px.
+
     Raises LocateError if no weld is found or its strip is not wholly in view, ModelError if the network
     fails.
     """
@@ -101,7 +103,7 @@ def locate(image: Image, expected: Expected, find_sectors: SectorFinder) -> Loca
         support,
         residual_px=float(np.sqrt(np.mean(residual[on_circle] ** 2))),
     )
-    if not in_view(ring, width, height):
+    if not in_view(ring, width, height, um_per_px=NETWORK_UM_PER_PX):
         raise LocateError(f"the weld at ({x:.0f}, {y:.0f}) px is not wholly in view", out_of_view=True)
     return Located(ring, np.where(near, presence, 0.0))
 

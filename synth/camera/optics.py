@@ -22,6 +22,11 @@ class Optics:
     pixel_mm: float = 0.013
 
     @property
+    def um_per_px(self) -> float:
+        """Scale of the images in µm per pixel, in the object plane."""
+        return self.pixel_mm * 1000
+
+    @property
     def focal_px(self) -> float:
         """Focal length in pixels."""
         return self.distance_mm / self.pixel_mm

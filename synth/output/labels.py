@@ -50,9 +50,11 @@ def mask(points: Array, width: int, height: int) -> NDArray[np.bool_]:
     return image
 
 
-def strip_mask(outline: Outline, ring: Ring, origin_px: tuple[int, int]) -> NDArray[np.bool_]:
+def strip_mask(
+    outline: Outline, ring: Ring, origin_px: tuple[int, int], *, um_per_px: float
+) -> NDArray[np.bool_]:
     """Return the mask (128, 2688) of a defect on the strip, across the seam too."""
-    points = frame_to_strip(ring, outline.points - origin_px)
+    points = frame_to_strip(ring, outline.points - origin_px, um_per_px=um_per_px)
     points[:, 0] = np.unwrap(points[:, 0], period=STRIP_COLUMNS)
     if outline.end_deg - outline.start_deg >= 360:
         half = len(points) // 2

@@ -104,7 +104,7 @@ def _write_strips(out: Path, name: str, *, part: Part, optics: Optics, image: Im
     in_frame, in_strip = np.zeros((height, width), bool), np.zeros((STRIP_ROWS, STRIP_COLUMNS), bool)
     for outline in outlines(part, optics):
         in_frame |= mask(outline.points - (left, top), width, height)
-        in_strip |= strip_mask(outline, ring, (left, top))
+        in_strip |= strip_mask(outline, ring, (left, top), um_per_px=optics.um_per_px)
     write_image(out / "masks" / name, in_frame.astype(np.uint8) * 255)
-    write_image(out / "strips" / name, unwrap(image, ring))
+    write_image(out / "strips" / name, unwrap(image, ring, um_per_px=optics.um_per_px))
     write_image(out / "strip_masks" / name, in_strip.astype(np.uint8) * 255)

@@ -107,11 +107,16 @@ def _ring(job: Job, optics: Optics) -> list[_Shot]:
     ring = Ring(
         x - window[0] + float(error[0]), y - window[1] + float(error[1]), radius + float(error[2]), 1.0
     )
-    images = segments(unwrap(image, ring))
+    images = segments(unwrap(image, ring, um_per_px=optics.um_per_px))
     heights = (
-        _unwrap_map(height_mm, ring) if job.heights else np.zeros((STRIP_ROWS, STRIP_COLUMNS), np.float32)
+        _unwrap_map(height_mm, ring, optics)
+        if job.heights
+        else np.zeros((STRIP_ROWS, STRIP_COLUMNS), np.float32)
     )
-    masks = [(outline, strip_mask(outline, ring, window[:2])) for outline in outlines(part, optics)]
+    masks = [
+        (outline, strip_mask(outline, ring, window[:2], um_per_px=optics.um_per_px))
+        for outline in outlines(part, optics)
+    ]
     shots = []
     for crop in job.shard.crops:
         columns = slice(crop.place * SEGMENT_PX, (crop.place + 1) * SEGMENT_PX)
@@ -125,10 +130,11 @@ def _in_view(masks: list[tuple[Outline, Mask]]) -> list[tuple[Outline, Mask]]:
     return [(outline, m) for outline, m in masks if outline.kind in DETECTED and m.any()]
 
 
-def _unwrap_map(values: NDArray[np.float32], ring: Ring) -> NDArray[np.float32]:
+def _unwrap_map(values: NDArray[np.float32], ring: Ring, optics: Optics) -> NDArray[np.float32]:
     """Return the strip (128, 2688) of a map of floats, by the station's formula."""
     column, row = np.meshgrid(np.arange(STRIP_COLUMNS), np.arange(STRIP_ROWS))
-    at = strip_to_frame(ring, np.stack([column.ravel(), row.ravel()], axis=1)).astype(np.float32)
+    points = np.stack([column.ravel(), row.ravel()], axis=1).astype(np.float64)
+    at = strip_to_frame(ring, points, um_per_px=optics.um_per_px).astype(np.float32)
     x, y = at[:, 0].reshape(column.shape), at[:, 1].reshape(column.shape)
     return np.asarray(cv2.remap(values, x, y, cv2.INTER_LINEAR), np.float32)
 

@@ -103,6 +103,7 @@ def test_the_settings_of_a_camera_say_what_it_is_and_what_can_be_set() -> None:
     assert (EMULATED.origin, recorded.origin) == (Origin.SIMULATED, Origin.REPLAY)
     assert CameraSettings(kind="new").origin is Origin.CAMERA
     assert CameraSettings(kind="new").adjustable is None
+    assert CameraSettings(kind="new").size_px is None
 
 
 def test_the_configuration_of_a_camera_is_written_as_ever() -> None:

@@ -1,6 +1,7 @@
 import json
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -17,6 +18,7 @@ from models.data.lot import Defect, read_labels
 from models.errors import LearningError
 from station.classify.onnx import CLASSES
 from station.domain import SEGMENT_DEG, STRIP_COLUMNS
+from station.files.image import encode_png, read_image
 from tests.models.made import HOLE, MISSING
 from tests.parts import FRAMES
 
@@ -96,7 +98,7 @@ def test_too_few_parts_are_refused() -> None:
 def lot(folder: Path, **changes: object) -> Path:
     """A lot of one entry, changed."""
     item = {**json.loads((FRAMES / "labels.json").read_text())["frames"][0], **changes}
-    (folder / "frames").mkdir()
+    (folder / "frames").mkdir(parents=True)
     (folder / "frames" / "bad.png").write_bytes(b"x")
     for image in FRAMES.glob("*.png"):
         (folder / "frames" / image.name).symlink_to(image)
@@ -116,6 +118,7 @@ def test_a_lot_is_cut_at_its_labelled_rings(tmp_path: Path) -> None:
         ({"frame": "absent.png"}, "absent.png: the image is missing"),
         ({"frame": "bad.png"}, "not a readable image"),
         ({"radius": -1}, "centre and radius"),
+        ({"um_per_px": 5}, "um_per_px 5 must be 9 to 65"),
         ({"center": [5.0, 5.0]}, "not wholly in view"),
         ({"verdict": "NOK", "defects": [{"kind": "dent", "angle_deg": [1, 2]}]}, "unknown kind dent"),
         ({"verdict": "NOK", "defects": [{"kind": "hole", "angle_deg": [9, 2]}]}, "angle_deg"),
@@ -139,3 +142,17 @@ def test_a_part_labelled_twice_is_refused(tmp_path: Path) -> None:
 def test_no_lot_says_how_to_make_one(tmp_path: Path) -> None:
     with pytest.raises(LearningError, match="weldgate-synth part"):
         read_lot(tmp_path)
+
+
+def test_a_lot_of_another_scale_gives_the_same_strips(tmp_path: Path) -> None:
+    entry = json.loads((FRAMES / "labels.json").read_text())["frames"][0]
+    (ours,) = read_lot(lot(tmp_path / "ours"))
+    center = [(v + 0.5) / 2 - 0.5 for v in entry["center"]]
+    coarse = lot(tmp_path / "coarse", center=center, radius=entry["radius"] / 2, um_per_px=26)
+    path = coarse / "frames" / entry["frame"]
+    half = cv2.resize(read_image(path), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+    path.unlink()
+    path.write_bytes(encode_png(np.asarray(half, np.uint8)))
+    (strip,) = read_lot(coarse)
+    smooth = cv2.GaussianBlur(ours.strip, (0, 0), 1.0)
+    assert np.abs(strip.strip.astype(float) - smooth).mean() < 0.2 * ours.strip.std()

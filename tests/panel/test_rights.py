@@ -345,7 +345,7 @@ def test_a_part_that_was_not_recorded_is_never_shown_with_an_image(
 ) -> None:
     session = window.session
     session.bridge.parts.emit([part(nok_inspection(), 0)])
-    session.bridge.preview.emit(make_preview(0, frames[label_with("OK")["frame"]], None))
+    session.bridge.preview.emit(make_preview(0, frames[label_with("OK")["frame"]], None, um_per_px=13.0))
     assert session.received.last_nok is not None
     assert session.received.last_nok.preview is None
     assert not session.received.thumbs

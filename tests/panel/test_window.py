@@ -44,7 +44,7 @@ def test_events_reach_the_window(
 ) -> None:
     item = label_with("hole")
     ring = Ring(item["center"][0], item["center"][1], item["radius"], 1.0)
-    event, preview = part(nok_inspection(), 12), make_preview(12, frames[item["frame"]], ring)
+    event, preview = part(nok_inspection(), 12), make_preview(12, frames[item["frame"]], ring, um_per_px=13.0)
     publisher_said = [False]
 
     def received() -> None:
@@ -79,7 +79,7 @@ def test_a_part_without_its_image_is_never_shown_on_the_image_of_another(
     session = window.session
     item = label_with("OK")
     session.bridge.parts.emit([part(ok_inspection(), 1)])
-    session.bridge.preview.emit(make_preview(1, frames[item["frame"]], None))
+    session.bridge.preview.emit(make_preview(1, frames[item["frame"]], None, um_per_px=13.0))
     assert live(window).weld.note == ""
     session.bridge.parts.emit([part(ok_inspection(), 2)])
     assert "no image of this part" in live(window).weld.note

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from station.archive.reader import read_records
@@ -222,6 +223,16 @@ def test_a_network_that_fails_ends_in_error_after_a_grab(rig: Rig, monkeypatch: 
     inspection = rig.event.record.inspection
     assert (inspection.verdict, inspection.reason) == (Verdict.ERROR, Reason.INTERNAL)
     assert inspection.timing.grab_ms is not None
+
+
+def test_images_too_small_for_the_weld_are_named_in_the_log(
+    rig: Rig, caplog: pytest.LogCaptureFixture
+) -> None:
+    rig.camera.image = np.full((1000, 1600), 90, np.uint8)
+    rig.procedure.inspect_part(TRIGGER, rig.loaded)
+    assert rig.event.record.verdict is Verdict.ERROR
+    (line,) = [record.getMessage() for record in caplog.records if record.levelname == "ERROR"]
+    assert "images of 1600 x 1000 px are too small for a radius of 5.564 + 0.156 mm at 13 µm/px" in line
 
 
 def test_a_trigger_that_got_no_answer_is_shown_as_error_without_a_record(rig: Rig) -> None:

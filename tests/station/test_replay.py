@@ -17,10 +17,12 @@ from station.errors import ImageError
 from station.files.image import read_marked
 from station.inspection.inspector import Inspector
 from station.inspection.loading import load_inspector
+from station.panel.pages.replay.judging import judge_images
 from station.records import Part
 from station.replay.files import sources
+from station.replay.results import as_entry
 from station.settings.file import load
-from station.settings.model import ArchiveSettings, Settings, for_images, for_recipe
+from station.settings.model import ArchiveSettings, Settings, for_images, for_recipe, for_scale
 from tests.conftest import MODEL
 from tests.parts import FRAMES, label_with, labels
 
@@ -87,38 +89,97 @@ def test_images_from_elsewhere_are_read_with_a_word_of_what_was_lost(
         assert (image == grey).all()
 
 
-@pytest.mark.parametrize("um_per_px", [20.0, 10.0])
-def test_pictures_of_another_scale_are_brought_to_ours(
-    um_per_px: float, tmp_path: Path, frames: dict[str, Image]
+def at_scale(frame: Image, um_per_px: float) -> Image:
+    """A shipped frame as a camera of another scale sees it."""
+    factor = 13.0 / um_per_px
+    method = cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC
+    return np.asarray(cv2.resize(frame, None, fx=factor, fy=factor, interpolation=method), np.uint8)
+
+
+def replayed(folder: Path, out: Path, *options: str) -> dict[str, dict[str, object]]:
+    """Results of a replay without the time it took."""
+    assert main(["replay", str(folder), "--json", str(out), "--processes", "1", *options]) == 0
+    return {name: {**e, "inspection_ms": None} for name, e in json.loads(out.read_text()).items()}
+
+
+@pytest.fixture(scope="module")
+def of_ours(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, object]]:
+    """Results of the shipped frames at the networks' scale."""
+    return replayed(FRAMES, tmp_path_factory.mktemp("ours") / "out.json")
+
+
+@pytest.mark.parametrize("um_per_px", [9.0, 20.0, 26.0, 39.0, 65.0])
+def test_the_scale_of_the_settings_and_that_of_the_option_give_the_same_right_verdicts(
+    um_per_px: float, tmp_path: Path, frames: dict[str, Image], of_ours: dict[str, dict[str, object]]
 ) -> None:
     for item in labels():
-        frame = frames[item["frame"]]
-        factor = 13.0 / um_per_px
-        other = cv2.resize(
-            frame, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC
-        )
-        cv2.imwrite(str(tmp_path / item["frame"]), other)
-    assert (
-        main(
-            [
-                "replay",
-                str(tmp_path),
-                "--um-per-px",
-                str(um_per_px),
-                "--json",
-                str(tmp_path / "out.json"),
-                "--processes",
-                "1",
-            ]
-        )
-        == 0
+        cv2.imwrite(str(tmp_path / item["frame"]), at_scale(frames[item["frame"]], um_per_px))
+    settings = tmp_path / "station.toml"
+    settings.write_text(
+        f'[camera]\nkind = "replay"\nfolder = "."\n[weld]\num_per_px = {um_per_px}\n'
+        f'[model]\npath = "{MODEL}"\nring_path = "{SHIPPED / "ring.onnx"}"\n'
     )
-    entries = json.loads((tmp_path / "out.json").read_text())
+    found = replayed(tmp_path, tmp_path / "a.json", "--um-per-px", str(um_per_px))
+    assert found == replayed(tmp_path, tmp_path / "b.json", "-c", str(settings))
+    inspector = load_inspector(load(settings))[0]
+    done = judge_images(
+        for_images(SHIPPED), tmp_path, None, um_per_px=um_per_px, progress=lambda _done, _of: True
+    )
+    assert done is not None
     for item in labels():
-        found = entries[item["frame"]]
-        assert found["verdict"] == item["verdict"]
-        assert found["center"] == pytest.approx([(c + 0.5) * factor - 0.5 for c in item["center"]], abs=4)
-        assert found["radius"] == pytest.approx(item["radius"] * factor, rel=0.02)
+        entry, ours = found[item["frame"]], of_ours[item["frame"]]
+        assert (entry["verdict"], entry["reason"]) == (item["verdict"], ours["reason"])
+        factor = 13.0 / um_per_px
+        assert entry["center"] == pytest.approx([(c + 0.5) * factor - 0.5 for c in item["center"]], abs=4)
+        assert entry["radius"] == pytest.approx(item["radius"] * factor, rel=0.02)
+        judged = inspector.inspect(at_scale(frames[item["frame"]], um_per_px))
+        assert entry["segments"] == [scores.nok for scores in judged.scores], "the line judges alike"
+        assert as_entry(done.results[item["frame"]])["segments"] == entry["segments"], "and the window"
+        if um_per_px <= 39:
+            lengths = [[f["length_mm"] for f in e["findings"]] for e in (entry, ours)]  # type: ignore[attr-defined]
+            assert lengths[0] == pytest.approx(lengths[1], rel=0.1), "mm of the part"
+
+
+def test_a_record_is_judged_and_exported_at_the_scale_at_which_it_was_taken(
+    tmp_path: Path, frames: dict[str, Image], capsys: pytest.CaptureFixture[str]
+) -> None:
+    crops = {}
+    for um_per_px in (13.0, 26.0):
+        folder, target = tmp_path / f"records-{um_per_px:g}", tmp_path / f"crops-{um_per_px:g}"
+        images = {name: at_scale(frame, um_per_px) for name, frame in frames.items()}
+        record_all(folder, for_scale(for_images(SHIPPED), um_per_px), images)
+        again = ["replay", str(folder), "--processes", "1", "--um-per-px", str(um_per_px)]
+        assert main([*again, "--report", str(tmp_path / "report")]) == 0
+        assert "4, of which 4 agree bit for bit" in capsys.readouterr().out
+        assert "cannot be read" not in (tmp_path / "report" / "report.html").read_text()
+        assert main(["records", "export", str(folder), str(target), "--format", "dataset"]) == 0
+        crops[um_per_px] = {path.relative_to(target): read_marked(path)[0] for path in target.rglob("*.png")}
+    assert main(["replay", str(tmp_path / "records-26"), "--processes", "1"]) == 1, "its scale is forgotten"
+    output = capsys.readouterr()
+    assert output.err.count("taken at 26 µm/px, but judged as 13 µm/px") == 4
+    assert "compared with the line: 0 parts" in output.out
+    assert crops[26.0].keys() == crops[13.0].keys()
+    for name, crop in crops[13.0].items():
+        away = np.abs(crop.astype(float) - crops[26.0][name])
+        assert away.mean() < 0.35 * np.abs(crop.astype(float) - crop.mean()).mean() + 2, name
+
+
+@pytest.mark.parametrize("um_per_px", ["8.9", "66", "nan"])
+def test_a_scale_that_was_not_trained_is_refused(
+    um_per_px: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "part.png").write_bytes((FRAMES / label_with("OK")["frame"]).read_bytes())
+    assert main(["replay", str(tmp_path), "--um-per-px", um_per_px]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "scale of the images: the networks are trained for 9 to 65 µm/px" in line
+    assert "use another lens, or train networks" in line
+
+
+def test_an_image_too_small_for_the_weld_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cv2.imwrite(str(tmp_path / "small.png"), np.full((1008, 1200), 90, np.uint8))
+    assert main(["replay", str(tmp_path), "--processes", "1"]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "small.png: images of 1200 x 1008 px are too small for a radius of 5.564 + 0.156 mm" in line
 
 
 @pytest.mark.parametrize(
@@ -239,11 +300,19 @@ def test_a_record_that_the_same_judge_judges_otherwise_is_a_fault(
 
 
 def test_one_image_that_cannot_be_judged_does_not_end_the_others(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    inspect = Inspector.inspect
+
+    def with_a_fault(inspector: Inspector, image: Image) -> Inspection:
+        if image.shape == (1, 1):
+            raise RuntimeError("a fault")
+        return inspect(inspector, image)
+
+    monkeypatch.setattr(Inspector, "inspect", with_a_fault)
     cv2.imwrite(str(tmp_path / "dot.png"), np.zeros((1, 1), np.uint8))
     (tmp_path / "part.png").write_bytes((FRAMES / label_with("OK")["frame"]).read_bytes())
-    assert main(["replay", str(tmp_path), "--um-per-px", "5", "--processes", "1"]) == 1
+    assert main(["replay", str(tmp_path), "--processes", "1"]) == 1
     output = capsys.readouterr()
-    assert "dot.png: could not be judged" in output.err
-    assert output.out.startswith("2 images")
+    assert "dot.png: could not be judged (RuntimeError: a fault)" in output.err
+    assert output.out.startswith("2 images: 1 OK")

@@ -22,7 +22,6 @@ from station.domain import (
     Frame,
     Inspection,
     Origin,
-    Ring,
     SegmentQuality,
     Timing,
     Unseen,
@@ -179,18 +178,12 @@ def test_an_entry_of_another_form_is_an_error(damaged: dict[str, object]) -> Non
 def test_an_error_of_the_line_without_a_ring_is_inspected_but_has_no_scores() -> None:
     line = "no weld found: the best ring scores 0.10, the minimum is 0.22"
     inspection = Inspection.error(Reason.NO_WELD_FOUND, timing=Timing(locate_ms=3.0), detail=line)
-    found = as_replayed("a.png", inspection, 1.0)
+    found = as_replayed("a.png", inspection)
     assert found.problem is None
     assert found.worst is None
     entry = as_entry(found)
     assert (entry["center"], entry["segments"], entry["inspection_ms"]) == (None, [None] * SEGMENTS, 3.0)
     assert (entry["detail"], entry["unseen"], entry["segment_quality"]) == (line, None, None)
-
-
-def test_the_circle_is_in_pixels_of_the_image_as_it_was_read() -> None:
-    inspection = Inspection.error(Reason.NO_WELD_FOUND, ring=Ring(199.5, 99.5, 80.0, 1.0))
-    assert as_replayed("a.png", inspection, 1.0).circle == Circle(199.5, 99.5, 80.0)
-    assert as_replayed("a.png", inspection, 2.0).circle == Circle(99.5, 49.5, 40.0)
 
 
 def test_a_continued_run_equals_an_uninterrupted_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,11 +199,11 @@ def test_a_continued_run_equals_an_uninterrupted_one(tmp_path: Path, monkeypatch
     judge = station.replay.run.judge_image
     judged: list[str] = []
 
-    def until_the_last(inspector: Inspector, source: Source, factor: float) -> Replayed:
+    def until_the_last(inspector: Inspector, source: Source) -> Replayed:
         judged.append(source.name)
         if judged == ["OK.png", "a.png", "hole.png"]:
             raise KeyboardInterrupt
-        return judge(inspector, source, factor)
+        return judge(inspector, source)
 
     monkeypatch.setattr(station.replay.run, "judge_image", until_the_last)
     assert main(command) == 130
@@ -246,7 +239,7 @@ def test_the_archive_of_an_image_is_known_whatever_its_name(tmp_path: Path, name
     (tmp_path / "other.png").write_bytes(next(folder.rglob("*.png")).read_bytes())
     recorded, other = sources([folder, tmp_path / "other.png"])
     assert (recorded.archive, other.archive) == (folder, None)
-    same = as_replayed(recorded.name, ok_inspection(), 1.0)
+    same = as_replayed(recorded.name, ok_inspection())
     agreed = compare([recorded, other], {recorded.name: same, other.name: UNREADABLE}, made_by)
     assert (agreed.compared, agreed.same_judge, agreed.not_alike, agreed.flips) == (1, 1, (), ())
     moved = replace(same, findings=(HOLE,))

@@ -207,9 +207,8 @@ def _strip(record: Record, folder: Path) -> StripImage:
         for i, kind in enumerate(record.inspection.rejected)
         if kind is not None
     )
-    return strip(
-        None if record.frame_file is None else folder / record.frame_file, record.inspection.ring, rejected
-    )
+    path = None if record.frame_file is None else folder / record.frame_file
+    return strip(path, record.inspection.ring, rejected, um_per_px=record.provenance.um_per_px)
 
 
 def _judges(records: Sequence[Record]) -> tuple[tuple[str, ...], ...]:

@@ -42,12 +42,18 @@ class Gallery:
     welds: tuple[Weld, ...]
 
 
-def strip(path: Path | None, ring: Ring | None, spans_deg: Iterable[tuple[float, float]]) -> StripImage:
-    """Return the unwrapped weld with marks at `spans_deg`, pairs of start and end; they may exceed 360."""
+def strip(
+    path: Path | None, ring: Ring | None, spans_deg: Iterable[tuple[float, float]], *, um_per_px: float
+) -> StripImage:
+    """Return the unwrapped weld with marks at `spans_deg`, pairs of start and end; they may exceed 360.
+
+    `um_per_px` is the scale of the image.
+    """
     if path is None or ring is None:
         return StripImage(missing="no image")
     try:
-        image = cv2.cvtColor(unwrap(read_image(path), ring), cv2.COLOR_GRAY2BGR)
+        unwrapped = unwrap(read_image(path), ring, um_per_px=um_per_px)
+        image = cv2.cvtColor(unwrapped, cv2.COLOR_GRAY2BGR)
     except (ImageError, LocateError):
         return StripImage(missing="the image was deleted or cannot be read")
     for start, end in spans_deg:

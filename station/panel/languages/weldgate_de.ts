@@ -1544,8 +1544,8 @@
         <translation>Zuerst anmelden (Seite Einrichten).</translation>
     </message>
     <message>
-        <source>The scale must be 1 to 200 µm/px.</source>
-        <translation>Der Maßstab muss zwischen 1 und 200 µm/px liegen.</translation>
+        <source>The scale must be {low} to {high} µm/px.</source>
+        <translation>Der Maßstab muss zwischen {low} und {high} µm/px liegen.</translation>
     </message>
     <message>
         <source>Choose a folder first.</source>

@@ -11,7 +11,7 @@ from station.replay.compare import Comparison, compare
 from station.replay.files import Source, sources
 from station.replay.replayed import Replayed
 from station.replay.run import replay
-from station.settings.model import Settings
+from station.settings.model import Settings, for_scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,8 +23,6 @@ class Done:
     """Results by name of the image."""
     judge: tuple[Inspector, Provenance]
     """What judged the images."""
-    factor: float
-    """Scale of the images divided by the scale of the settings."""
     comparison: Comparison | None
     """Comparison with the line, or None if no image was recorded by it."""
     problems: tuple[str, ...]
@@ -38,20 +36,20 @@ def judge_images(
     um_per_px: float,
     progress: Progress,
 ) -> Done | None:
-    """Judge the newest `count` images below a path, or all of them if None.
+    """Judge the newest `count` images below a path, or all of them if None, as images of this scale.
 
     Return None if cancelled. Raises WeldgateError.
     """
     found = sources([path])
     if count is not None:
         found = found[-count:]
-    on_one_thread = settings.model_copy(
+    on_one_thread = for_scale(settings, um_per_px).model_copy(
         update={"model": settings.model.model_copy(update={"threads": 1, "reference_path": None})}
     )
-    judge, factor = load_inspector(on_one_thread), um_per_px / settings.weld.um_per_px
+    judge = load_inspector(on_one_thread)
     results: dict[str, Replayed] = {}
     problems: list[str] = []
-    for replayed in replay(found, on_one_thread, judge=judge, factor=factor, processes=1, part=None):
+    for replayed in replay(found, on_one_thread, judge=judge, processes=1, part=None):
         results[replayed.name] = replayed
         problems += [*([replayed.problem] if replayed.problem else []), *replayed.warnings]
         if not progress(len(results), len(found)):
@@ -62,7 +60,6 @@ def judge_images(
         sources=tuple(found),
         results=results,
         judge=judge,
-        factor=factor,
         comparison=comparison,
         problems=tuple(problems),
     )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSplitter, QVBoxLayout, QWidget
 
-from station.domain import Verdict
+from station.domain import TRAINED_UM_PER_PX, Verdict
 from station.files.image import read_image
 from station.journal.users import Level
 from station.panel.look.words import data, translate
@@ -19,7 +19,6 @@ from station.panel.widgets.progress import Progress
 from station.panel.widgets.weld.recorded import judged
 from station.panel.widgets.weld.weld_view import Drawn, WeldView
 from station.panel.widgets.work import WorkBar
-from station.replay.judge import at_scale
 from station.replay.report import write_page
 from station.replay.results import write_json
 from station.settings.model import for_recipe
@@ -38,6 +37,7 @@ class ReplayPage(Page):
         self._lay_out()
         self.judge.clicked.connect(self.start)
         self.choose.clicked.connect(self._ask_folder)
+        self.recipe.currentIndexChanged.connect(self._on_recipe)
         self.report.clicked.connect(self._ask_report)
         self.only_flips.toggled.connect(self._fill)
         self.table.itemSelectionChanged.connect(self._on_chosen)
@@ -57,8 +57,8 @@ class ReplayPage(Page):
         word = translate("replay", "recipe")
         for number in sorted({1, *self._session.received.settings.recipes}):
             self.recipe.addItem(f"{word} {number}", number)
-        self.scale = NumberField(1.0, 200.0, "µm/px")
-        self.scale.set(self._session.received.settings.weld.um_per_px)
+        self.scale = NumberField(*TRAINED_UM_PER_PX, "µm/px")
+        self._on_recipe()
         self.judge, self.report = (
             QPushButton(translate("replay", "Judge")),
             QPushButton(translate("replay", "Report…")),
@@ -116,6 +116,10 @@ class ReplayPage(Page):
             button.setToolTip(hint)
         self.report.setEnabled(not hint and self.done is not None)
 
+    def _on_recipe(self) -> None:
+        settings, number = self._session.received.settings, int(self.recipe.currentData())
+        self.scale.set(for_recipe(settings, number).weld.um_per_px)
+
     def _ask_folder(self) -> None:
         folder = ask_folder(self, self._session, translate("replay", "folder with images"))
         if folder is not None:
@@ -126,7 +130,9 @@ class ReplayPage(Page):
         """Judge the images that the fields name."""
         scale, count, text = self.scale.value, self.what.currentData(), self.folder.text().strip()
         if scale is None:
-            self.problem.setText(translate("replay", "The scale must be 1 to 200 µm/px."))
+            text = translate("replay", "The scale must be {low} to {high} µm/px.")
+            low, high = TRAINED_UM_PER_PX
+            self.problem.setText(text.format(low=f"{low:g}", high=f"{high:g}"))
             return
         if count is None and not text:
             self.problem.setText(translate("replay", "Choose a folder first."))
@@ -209,9 +215,9 @@ class ReplayPage(Page):
         path = next(source.path for source in found.sources if source.name == name)
 
         def work(_progress: Progress) -> tuple[str, Drawn]:
-            image, inspector = at_scale(read_image(path), found.factor), found.judge[0]
+            image, inspector = read_image(path), found.judge[0]
             inspection = inspector.inspect(image)
-            return str(name), judged(image, inspection)[0]
+            return str(name), judged(image, inspection, um_per_px=inspector.um_per_px)[0]
 
         self._chosen_work.start("", work, self._on_image)
 

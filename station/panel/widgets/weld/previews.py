@@ -13,7 +13,13 @@ from station.records import Record
 def drawn(preview: Preview, ring: Ring | None = None) -> Drawn:
     """Return a preview, with a ring if one is given."""
     image = QImage.fromData(preview.frame_jpeg)
-    return Drawn(image=image, scale=preview.scale, origin_px=preview.origin_px, ring=ring)
+    return Drawn(
+        image=image,
+        scale=preview.scale,
+        origin_px=preview.origin_px,
+        um_per_px=preview.um_per_px,
+        ring=ring,
+    )
 
 
 def drawn_part(preview: Preview, part: PartEvent) -> Drawn:

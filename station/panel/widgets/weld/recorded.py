@@ -37,12 +37,16 @@ def recorded_frame(folder: Path, record: Record) -> Image:
 
 def of_record(folder: Path, record: Record) -> tuple[Drawn, QImage | None]:
     """Return image and strip of a record with what was found in it. Raises ImageError, LocateError."""
-    return judged(recorded_frame(folder, record), record.inspection)
+    um_per_px = record.provenance.um_per_px
+    return judged(recorded_frame(folder, record), record.inspection, um_per_px=um_per_px)
 
 
-def judged(image: Image, inspection: Inspection) -> tuple[Drawn, QImage | None]:
-    """Return image and strip of a frame, (H, W) uint8. Raises LocateError if the ring is cut off."""
-    preview = make_preview(0, image, inspection.ring)
+def judged(image: Image, inspection: Inspection, *, um_per_px: float) -> tuple[Drawn, QImage | None]:
+    """Return image and strip of a frame, (H, W) uint8, of this scale.
+
+    Raises LocateError if the ring is cut off.
+    """
+    preview = make_preview(0, image, inspection.ring, um_per_px=um_per_px)
     return drawn_inspection(preview, inspection), strip_image(preview)
 
 
@@ -56,9 +60,8 @@ def defect_map(settings: Settings, record: Record) -> tuple[int, QImage]:
     classifier = Classifier(for_recipe(settings, record.provenance.recipe).model.path)
     if classifier.card.file_hash != record.provenance.model_hash:
         raise ImageError("no defect map: another model judged this part")
-    judgement = classifier(
-        segments(unwrap(recorded_frame(settings.archive.folder, record), record.inspection.ring))
-    )
+    frame, um_per_px = recorded_frame(settings.archive.folder, record), record.provenance.um_per_px
+    judgement = classifier(segments(unwrap(frame, record.inspection.ring, um_per_px=um_per_px)))
     whole = whole_map(judgement.maps)  # (C, 32, 672)
     layer = np.zeros((*whole.shape[1:], 4), np.uint8)
     for kind, channel in reversed(list(zip(judgement.mapped, whole, strict=True))):

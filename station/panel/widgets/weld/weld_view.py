@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from station.domain import SEGMENT_DEG, SEGMENTS, STRIP_ROWS, Finding, Ring
 from station.panel.look import theme
 from station.panel.look.words import data, translate
+from station.vision.unwrap import row_px
 
 SHADE = (16, 18, 20)
 LIGHT, RED, YELLOW = "#e6e8ea", "#ff5a4f", "#ffcf4a"
@@ -25,6 +26,8 @@ class Drawn:
     """Image pixels per frame pixel."""
     origin_px: tuple[int, int]
     """Frame pixel (x, y) of the image's corner."""
+    um_per_px: float
+    """Scale of the frame."""
     ring: Ring | None = None
     segments_nok: tuple[bool, ...] = ()
     """True for each rejected segment."""
@@ -70,7 +73,8 @@ class WeldView(QWidget):
             scale = drawn.scale * zoom
             x_px, y_px = drawn.origin_px
             center = QPointF(drawn.ring.center_x_px - x_px, drawn.ring.center_y_px - y_px) * scale
-            overlay = _Overlay(painter, corner + center, drawn.ring.radius_px * scale, STRIP_ROWS / 2 * scale)
+            half = STRIP_ROWS / 2 * row_px(drawn.um_per_px) * scale
+            overlay = _Overlay(painter, corner + center, drawn.ring.radius_px * scale, half)
             overlay.draw(drawn)
         if self._caption and not self.note:
             font = painter.font()
