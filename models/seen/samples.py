@@ -12,7 +12,7 @@ from models.data.lot import LabelledFrame, frames, read_labels
 from models.errors import LearningError
 from models.seen.covers import Picture, cover
 from models.seen.network import COLUMNS
-from station.domain import SEGMENT_PX, STRIP_COLUMNS, Ring
+from station.domain import NETWORK_UM_PER_PX, SEGMENT_PX, STRIP_COLUMNS, Ring
 from station.files.image import read_image
 from station.vision.unwrap import in_view, unwrap
 
@@ -41,17 +41,17 @@ def read_strips(lot: Path, rng: np.random.Generator) -> list[Strips]:
         height, width = image.shape
         dx, dy, dr = rng.uniform(-JITTER_PX, JITTER_PX, 3)
         ring = Ring(label.center_x_px + dx, label.center_y_px + dy, label.radius_px + dr, 1.0)
-        if not in_view(ring, width, height):
+        if not in_view(ring, width, height, um_per_px=NETWORK_UM_PER_PX):
             continue
         mask = _mask(lot / "masks" / label.name, label, image.shape)
         beside = []
         for side in (-1, 1):
             other = Ring(ring.center_x_px, ring.center_y_px, ring.radius_px + side * BESIDE_PX, 1.0)
-            if in_view(other, width, height):
-                beside.append(unwrap(image, other))
+            if in_view(other, width, height, um_per_px=NETWORK_UM_PER_PX):
+                beside.append(unwrap(image, other, um_per_px=NETWORK_UM_PER_PX))
         if beside:
-            is_weld = (unwrap(mask, ring) > 127).astype(np.uint8)
-            found.append(Strips(unwrap(image, ring), is_weld, tuple(beside)))
+            is_weld = (unwrap(mask, ring, um_per_px=NETWORK_UM_PER_PX) > 127).astype(np.uint8)
+            found.append(Strips(unwrap(image, ring, um_per_px=NETWORK_UM_PER_PX), is_weld, tuple(beside)))
     if not found:
         raise LearningError(f"{lot}: no part has its ring and the sheet beside it in view")
     return found
