@@ -110,7 +110,7 @@ class Unseen(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SegmentQuality:
-    """What shows whether a segment was seen, measured on its crop."""
+    """What shows whether a segment was seen, measured on the middle rows of its crop, where the weld is."""
 
     mean_dn: float
     """Mean grey level, 0 to 255."""

@@ -6,7 +6,7 @@ any SQLite tool can read them.
 """
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 
 from pydantic import TypeAdapter
@@ -24,6 +24,8 @@ class Provenance:
     model_version: str
     model_hash: str
     ring_model_hash: str
+    seen_model_hash: str = field(default="", kw_only=True)
+    """SHA-256 of the network that says what is hidden; empty in records before format 4."""
     config_crc: int
     thresholds: Thresholds
     """Thresholds and minimum lengths of the decision."""

@@ -18,6 +18,7 @@ from hypothesis import settings
 
 from station.domain import Image
 from station.files.image import read_image
+from station.settings.model import ModelSettings
 from tests.parts import FRAMES, labels
 
 # a deadline of hypothesis is a speed test, which a busy machine fails
@@ -26,7 +27,10 @@ settings.load_profile("weldgate")
 
 ROOT = Path(__file__).resolve().parent.parent
 RING_MODEL = ROOT / "models" / "shipped" / "ring.onnx"
+SEEN_MODEL = ROOT / "models" / "shipped" / "seen.onnx"
 MODEL = ROOT / "models" / "shipped" / "weldgate.onnx"
+NETWORKS = ModelSettings(path=MODEL, ring_path=RING_MODEL, seen_path=SEEN_MODEL)
+"""The shipped networks."""
 
 
 @pytest.fixture(autouse=True)

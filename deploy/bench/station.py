@@ -63,6 +63,7 @@ def measure(folder: Path, count: int) -> tuple[list[Answer], list[PartEvent]]:
             "model": {
                 "path": SHIPPED_NETWORKS / "weldgate.onnx",
                 "ring_path": SHIPPED_NETWORKS / "ring.onnx",
+                "seen_path": SHIPPED_NETWORKS / "seen.onnx",
             },
             "archive": {"folder": folder / "records"},
             "plc": {"port": free_ports(1)[0]},

@@ -40,6 +40,7 @@ timeout_ms = {deadline_ms // 4}
 [model]
 path = {json.dumps(str(SHIPPED_NETWORKS / "weldgate.onnx"))}
 ring_path = {json.dumps(str(SHIPPED_NETWORKS / "ring.onnx"))}
+seen_path = {json.dumps(str(SHIPPED_NETWORKS / "seen.onnx"))}
 self_test_path = {json.dumps(str(good))}
 self_test_verdict = "OK"
 [plc]

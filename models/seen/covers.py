@@ -124,6 +124,16 @@ def blocks(rng: np.random.Generator, crop: Picture, spare: Picture) -> tuple[Pic
     return np.stack([np.roll(crop[row], int(shift[row])) for row in rows]), 1.0
 
 
+def turned(rng: np.random.Generator, crop: Picture, spare: Picture) -> tuple[Picture, float]:
+    """Return the weld out of place: turned, mirrored or at another size, as in a mirror or a lens."""
+    middle = (SEGMENT_PX - 1) / 2
+    angle, scale = rng.uniform(50, 310), float(np.exp(rng.uniform(-0.7, 0.7)))
+    turn = cv2.getRotationMatrix2D((middle, middle), angle if angle < 130 or angle > 230 else 90.0, scale)
+    seen = cv2.warpAffine(crop, turn, (SEGMENT_PX, SEGMENT_PX), borderMode=cv2.BORDER_REFLECT)
+    soft = cv2.GaussianBlur(seen, (0, 0), float(rng.uniform(0.5, 3)))
+    return np.asarray(soft * np.float32(rng.uniform(0.6, 1.2)), np.float32), 1.0
+
+
 COVERS: dict[str, Cover] = {
     "flat": flat,
     "gradient": gradient,
@@ -137,15 +147,21 @@ COVERS: dict[str, Cover] = {
     "film": film,
     "drop": drop,
     "blocks": blocks,
+    "turned": turned,
 }
 """Covers by name."""
+
+
+WEIGHTS = {"sheet": 2.0, "blur": 1.5, "motion": 3.0, "drop": 3.0, "film": 1.5, "blocks": 1.5, "turned": 1.5}
+"""How often a cover is drawn, if not once: those that are hard to tell from a weld more often."""
 
 
 def cover(
     rng: np.random.Generator, crop: Picture, spare: Picture, names: Sequence[str]
 ) -> tuple[Picture, Picture]:
     """Return a crop with one cover of `names` over part of it, and how far each pixel is hidden, 0 to 1."""
-    seen, hides = COVERS[str(rng.choice(list(names)))](rng, crop, spare)
+    weights = np.array([WEIGHTS.get(name, 1.0) for name in names])
+    seen, hides = COVERS[str(rng.choice(list(names), p=weights / weights.sum()))](rng, crop, spare)
     mask = _shape(rng, crop.shape)
     return np.asarray(crop + mask * (seen - crop), np.float32), np.asarray(
         mask * np.float32(hides), np.float32

@@ -8,18 +8,19 @@ from numpy.typing import NDArray
 
 from station.classify.decision import findings, mean_of, near_threshold, rejected_kinds
 from station.classify.drift import read_reference
-from station.classify.onnx import APPEARANCE_SIZE, Classifier, RingNetwork
+from station.classify.onnx import APPEARANCE_SIZE
 from station.classify.thresholds import in_use
 from station.defects import Reason
 from station.domain import NETWORK_UM_PER_PX, Image, Inspection, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
+from station.inspection.networks import Networks
 from station.inspection.verdict import Novelty, decide
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from station.settings.view import view_problem
 from station.vision.locate import Expected, Located, locate
 from station.vision.quality import gate, measure
 from station.vision.rescale import from_network_scale, to_network_scale
-from station.vision.seen import causes, measure_segments
+from station.vision.seen import causes, measure_segments, visible_fractions
 from station.vision.unwrap import in_view, segments, unwrap
 
 APPEARANCE_DECIMALS = 3
@@ -27,12 +28,11 @@ APPEARANCE_DECIMALS = 3
 
 
 class Inspector:
-    """Judges frames with one pair of networks and one set of limits."""
+    """Judges frames with one set of networks and one set of limits."""
 
     def __init__(
         self,
-        ring_network: RingNetwork,
-        classifier: Classifier,
+        networks: Networks,
         *,
         weld: WeldSettings,
         quality: QualitySettings,
@@ -43,14 +43,15 @@ class Inspector:
         Raises ModelError if the reference does not match the classifier, SettingsError if the settings limit
         a kind of defect that the classifier does not know.
         """
-        self._ring_network = ring_network
-        self.classifier = classifier
+        self._ring_network = networks.ring
+        self._seen_network = networks.seen
+        self.classifier = networks.classifier
         self._weld = weld
         self._quality = quality
         self._novel = model.novel
         px_per_mm = 1000.0 / NETWORK_UM_PER_PX
         self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
-        self.card = card = classifier.card
+        self.card = card = networks.classifier.card
         path = model.reference_path
         self.reference = None if path is None else read_reference(path, card.file_hash, APPEARANCE_SIZE)
         self.thresholds = in_use(card.thresholds, model.limits, model.segment_thresholds)
@@ -99,8 +100,13 @@ class Inspector:
         strip = unwrap(image, ring, um_per_px=self.um_per_px)
         crops = segments(strip)
         quality = measure(strip)
-        seen = measure_segments(crops, located.presence)
         unwrap_ms, start = _ms(start), perf_counter()
+        timing = Timing(grab_ms, locate_ms, unwrap_ms)
+        try:
+            hidden = self._seen_network(crops)
+        except ModelError as error:
+            return Inspection.error(Reason.MODEL_FAILED, ring, quality, timing, detail=str(error))
+        seen = measure_segments(crops, located.presence, visible_fractions(hidden))
         not_judged = Inspection(
             Verdict.ERROR,
             Reason.MODEL_FAILED,
@@ -108,7 +114,7 @@ class Inspector:
             quality=quality,
             segment_quality=seen,
             unseen=causes(seen, self._quality),
-            timing=Timing(grab_ms, locate_ms, unwrap_ms),
+            timing=timing,
         )
         unfit = gate(quality, self._quality)
         if unfit is not None:

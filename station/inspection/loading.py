@@ -6,10 +6,10 @@ import zlib
 from dataclasses import dataclass, replace
 
 from station import __version__
-from station.classify.onnx import Classifier, RingNetwork
 from station.classify.thresholds import Thresholds
 from station.defects import KINDS
 from station.inspection.inspector import Inspector
+from station.inspection.networks import load_networks
 from station.inspection.self_test import SelfTest
 from station.records import Provenance
 from station.settings.model import Settings, for_recipe
@@ -49,22 +49,22 @@ def prepare(settings: Settings, number: int) -> Loaded:
 
 def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:
     """Return the inspector of these settings and the provenance of its verdicts. Raises ModelError."""
-    ring_network = RingNetwork(settings.model.ring_path, settings.model.threads)
-    classifier = Classifier(settings.model.path, settings.model.threads)
-    inspector = Inspector(
-        ring_network, classifier, weld=settings.weld, quality=settings.quality, model=settings.model
-    )
+    networks = load_networks(settings.model)
+    inspector = Inspector(networks, weld=settings.weld, quality=settings.quality, model=settings.model)
+    card = networks.classifier.card
     parts = (
         settings.model_dump_json(include={"camera": True, "weld": True, "quality": True, "model": {"novel"}}),
-        ring_network.file_hash,
-        classifier.card.file_hash,
+        networks.ring.file_hash,
+        networks.seen.file_hash,
+        card.file_hash,
         *_words_of(inspector.thresholds),
     )
     provenance = Provenance(
         software=__version__,
-        model_version=classifier.card.version,
-        model_hash=classifier.card.file_hash,
-        ring_model_hash=ring_network.file_hash,
+        model_version=card.version,
+        model_hash=card.file_hash,
+        ring_model_hash=networks.ring.file_hash,
+        seen_model_hash=networks.seen.file_hash,
         config_crc=zlib.crc32("".join(parts).encode()) & 0xFFFF,
         thresholds=inspector.thresholds,
         limits_hash=hashlib.sha256(

@@ -107,7 +107,8 @@ def _scale_problem(taken_um_per_px: float, judged_um_per_px: float) -> str | Non
 
 
 def _judged_by(provenance: Provenance) -> tuple[object, ...]:
-    return provenance.model_hash, provenance.ring_model_hash, provenance.thresholds, provenance.limits_hash
+    networks = (provenance.model_hash, provenance.ring_model_hash, provenance.seen_model_hash)
+    return *networks, provenance.thresholds, provenance.limits_hash
 
 
 def _score(value: float | None) -> str:

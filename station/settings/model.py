@@ -54,6 +54,8 @@ class ModelSettings(Section):
 
     path: Path = Path("weldgate.onnx")
     ring_path: Path = Path("ring.onnx")
+    seen_path: Path = Path("seen.onnx")
+    """Network that says how much of the weld is hidden in a crop."""
     reference_path: Path | None = None
     """File with the appearance of the line's own good parts; None: drift is not monitored."""
     threads: int = Field(default=2, ge=1, le=64)
@@ -241,7 +243,12 @@ def for_images(networks: Path) -> Settings:
     """Return settings for recorded images without a settings file: default limits, networks in a folder."""
     camera = ReplaySettings(kind="replay", folder=Path())
     return Settings(
-        camera=camera, model=ModelSettings(path=networks / "weldgate.onnx", ring_path=networks / "ring.onnx")
+        camera=camera,
+        model=ModelSettings(
+            path=networks / "weldgate.onnx",
+            ring_path=networks / "ring.onnx",
+            seen_path=networks / "seen.onnx",
+        ),
     )
 
 

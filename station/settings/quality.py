@@ -17,13 +17,13 @@ class QualitySettings(Section):
     max_dark_share: Fraction = 0.6
     max_saturated_share: Fraction = 0.35
     min_sharpness: float = Field(default=0.01, ge=0)
-    min_segment_mean_dn: float = Field(default=10.0, ge=0, le=255)
+    min_segment_mean_dn: float = Field(default=15.0, ge=0, le=255)
     """Minimum mean grey level of a segment that was seen."""
     max_segment_dark_fraction: Fraction = 0.5
     """Maximum fraction of a segment at grey level 2 or below."""
     max_segment_saturated_fraction: Fraction = 0.5
     """Maximum fraction of a segment at grey level 254 or above."""
-    min_segment_contrast: float = Field(default=0.05, ge=0)
+    min_segment_contrast: float = Field(default=0.03, ge=0)
     """Minimum standard deviation of the grey level, divided by its mean."""
     min_segment_sharpness: float = Field(default=0.02, ge=0)
     """Minimum root mean square of the Laplacian, divided by the mean grey level."""

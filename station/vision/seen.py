@@ -17,6 +17,10 @@ from station.vision.locate import MIN_PRESENCE
 from station.vision.quality import DARK_DN, SATURATED_DN
 
 
+MIDDLE = slice(32, 96)
+"""Rows of a crop that are measured: the weld, as what lies beside it may be dark, bright or plain."""
+
+
 @dataclass(frozen=True, slots=True)
 class Check:
     """One value of a segment with its limit."""
@@ -88,7 +92,8 @@ def measure_segments(
     """Return the image quality of each of the 21 crops (21, 128, 128) uint8.
 
     `presence` (84,) float64 is that of weld or joint on the circle by sector, see `station.vision.locate`;
-    `visible` is the uncovered fraction of each segment, or None if no network tells it.
+    `visible` is the visible fraction of each segment, see `visible_fractions`, or None if no network tells
+    it.
     """
     welds = (presence.reshape(SEGMENTS, -1) >= MIN_PRESENCE).mean(axis=1)
     return tuple(
@@ -97,15 +102,26 @@ def measure_segments(
     )
 
 
+def visible_fractions(hidden: NDArray[np.float64]) -> tuple[float, ...]:
+    """Return how much of each segment's weld is visible, where it is hidden most.
+
+    `hidden` (21, 16) is the hidden fraction of the weld in 16 columns of each crop. A cover counts from two
+    columns on, 0.2 mm.
+    """
+    widest = (hidden[:, :-1] + hidden[:, 1:]) / 2
+    return tuple(float(value) for value in 1.0 - widest.max(axis=1))
+
+
 def _measured(crop: Image, weld: float, visible: float | None) -> SegmentQuality:
-    mean_dn = float(crop.mean())
+    weld_rows = crop[MIDDLE]
+    mean_dn = float(weld_rows.mean())
     divisor = max(mean_dn, 1.0)
-    laplacian = cv2.Laplacian(crop, cv2.CV_32F)
+    laplacian = cv2.Laplacian(weld_rows, cv2.CV_32F)
     return SegmentQuality(
         mean_dn=mean_dn,
-        dark_fraction=float(np.mean(crop <= DARK_DN)),
-        saturated_fraction=float(np.mean(crop >= SATURATED_DN)),
-        contrast=float(crop.std() / divisor),
+        dark_fraction=float(np.mean(weld_rows <= DARK_DN)),
+        saturated_fraction=float(np.mean(weld_rows >= SATURATED_DN)),
+        contrast=float(weld_rows.std() / divisor),
         sharpness=float(np.sqrt(np.mean(laplacian**2)) / divisor),
         weld=weld,
         visible=visible,

@@ -122,7 +122,7 @@ def _base(surface: Surface, course: Course, near: Index, away: Field) -> Field:
 
 def _cross_section(rng: np.random.Generator, s_mm: Field, across: Field, course: Course) -> Field:
     """Return the profile from border to border: convex, flat or concave, leaning, changing along the weld."""
-    crown = uniform(rng, (-0.04, 0.12)) if rng.random() < 0.8 else uniform(rng, (-0.01, 0.01))
+    crown = uniform(rng, (-0.04, 0.12)) if rng.random() < 0.65 else uniform(rng, (-0.008, 0.012))
     power = uniform(rng, (1.6, 5.0))
     lean = uniform(rng, (-0.3, 0.3)) * abs(crown)
     change = 1 + uniform(rng, (0, 0.5)) * noise(
@@ -157,7 +157,10 @@ def _skin(
     rng: np.random.Generator, surface: Surface, near: Index, s_mm: Field, across: Field, inside: Field
 ) -> None:
     """Give the bead its own reflectance and roughness, with oxide or soot in patches or along its borders."""
-    reflectance = np.full_like(s_mm, uniform(rng, (0.3, 1.0)))
+    like_sheet = rng.random() < 0.35
+    of_sheet = float(np.median(surface.reflectance[near])) * uniform(rng, (0.85, 1.2))
+    own = min(of_sheet, 1.0) if like_sheet else uniform(rng, (0.3, 1.0))
+    reflectance = np.full_like(s_mm, own)
     reflectance *= np.exp(np.float32(uniform(rng, (0, 0.15))) * noise(rng, s_mm, across, (0.5, 0.5)))
     if rng.random() < 0.45:
         patch = noise(rng, s_mm, across, (log_uniform(rng, (0.3, 4)), log_uniform(rng, (0.3, 1.5))))
@@ -171,7 +174,8 @@ def _skin(
             uniform(rng, (0.1, 0.8))
         )
         reflectance *= 1 - border * np.clip(0.6 + 0.5 * noise(rng, s_mm, across, (1.0, 1.0)), 0, 1)
-    rough = log_uniform(rng, (0.07, 0.4))
+    of_sheet = float(np.median(surface.roughness[near])) * uniform(rng, (0.8, 1.25))
+    rough = of_sheet if like_sheet else log_uniform(rng, (0.07, 0.4))
     patchy = np.exp(np.float32(uniform(rng, (0, 0.3))) * noise(rng, s_mm, across, (0.6, 0.6)))
     surface.reflectance[near] += inside * (reflectance - surface.reflectance[near])
     surface.roughness[near] += inside * (np.float32(rough) * patchy - surface.roughness[near])

@@ -62,7 +62,10 @@ def _groove(rng: np.random.Generator, surface: Surface, joint: Joint, away: Fiel
     half = joint.gap_mm / 2
     edge = log_uniform(rng, (0.01, 0.12))
     depth = log_uniform(rng, (0.02, 0.4))
-    wander = np.float32(uniform(rng, (0, 0.02))) * noise(rng, surface.x_mm, surface.y_mm, (1.0, 1.0))
+    grain = log_uniform(rng, (0.4, 3))
+    wander = np.float32(log_uniform(rng, (0.003, 0.07))) * noise(
+        rng, surface.x_mm, surface.y_mm, (grain, grain)
+    )
     inside = 1 - smooth_step(np.abs(away + wander), half, half + edge)
     surface.height_mm -= np.float32(depth) * inside
     if joint.gap_mm > 0.01:

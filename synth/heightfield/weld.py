@@ -31,6 +31,17 @@ def crescents(rng: np.random.Generator, s_mm: Field, across: Field, half_mm: flo
     return np.asarray(log_uniform(rng, (0.02, 0.4)) * pitch / (2 * np.pi) * wave * strength, np.float32)
 
 
+def sparse(rng: np.random.Generator, s_mm: Field, across: Field, half_mm: float) -> Field:
+    """Return a calm bead with a few deep ripples, alone or in groups."""
+    ripples = crescents(rng, s_mm, across, half_mm)
+    groups = noise(rng, s_mm, across, (log_uniform(rng, (0.15, 1.5)), uniform(rng, (0.3, 1.2))))
+    low = uniform(rng, (0.4, 1.8))
+    few = 1 / (1 + np.exp(-(groups - low) / np.float32(uniform(rng, (0.1, 0.4)))))
+    return np.asarray(
+        ripples * (few + uniform(rng, (0, 0.15))) + worn(rng, s_mm, across, half_mm), np.float32
+    )
+
+
 def pulsed(rng: np.random.Generator, s_mm: Field, across: Field, half_mm: float) -> Field:
     """Return overlapping round spots of a pulsed laser: each later one lies over the one before."""
     pitch = half_mm * log_uniform(rng, (0.18, 1.1))
@@ -109,6 +120,7 @@ def worn(rng: np.random.Generator, s_mm: Field, across: Field, half_mm: float) -
 
 FAMILIES: dict[str, Family] = {
     "crescents": crescents,
+    "sparse": sparse,
     "pulsed": pulsed,
     "wobbled": wobbled,
     "flowing": flowing,

@@ -17,19 +17,19 @@ from models.evaluation.evaluate import evaluate_lot
 from models.evaluation.first_day import first_day
 from models.evaluation.report import lines, summary, write_report
 from station.classify.drift import Reference, read_reference
-from station.classify.onnx import APPEARANCE_SIZE, Classifier, RingNetwork
+from station.classify.onnx import APPEARANCE_SIZE
 from station.inspection.inspector import Inspector
+from station.inspection.networks import load_networks
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from station.vision.unwrap import segments
-from tests.conftest import MODEL, RING_MODEL
+from tests.conftest import MODEL, NETWORKS
 from tests.parts import FRAMES, label_with, labels
 
 
 @pytest.fixture(scope="module")
 def inspector() -> Inspector:
     return Inspector(
-        RingNetwork(RING_MODEL),
-        Classifier(MODEL),
+        load_networks(NETWORKS),
         weld=WeldSettings(),
         quality=QualitySettings(),
         model=ModelSettings(),
@@ -119,8 +119,7 @@ def test_the_first_day_writes_a_reference_of_good_parts_only(
     assert reference.parts == parts
     settings = ModelSettings(reference_path=tmp_path / "line.json")
     watched = Inspector(
-        RingNetwork(RING_MODEL),
-        inspector.classifier,
+        load_networks(NETWORKS),
         weld=WeldSettings(),
         quality=QualitySettings(),
         model=settings,

@@ -39,11 +39,12 @@ from models.evaluation.evaluate import evaluate_crops, evaluate_lot  # noqa: E40
 from models.evaluation.measures import decided  # noqa: E402
 from models.evaluation.report import summary  # noqa: E402
 from models.evaluation.scores import class_scores  # noqa: E402
-from station.classify.onnx import CLASSES, MAPPED, Classifier, Judged, RingNetwork  # noqa: E402
+from station.classify.onnx import CLASSES, MAPPED, Classifier, Judged  # noqa: E402
 from station.domain import SegmentScores  # noqa: E402
 from station.inspection.inspector import Inspector  # noqa: E402
+from station.inspection.networks import load_networks  # noqa: E402
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings  # noqa: E402
-from tests.conftest import MODEL, RING_MODEL  # noqa: E402
+from tests.conftest import MODEL, NETWORKS  # noqa: E402
 from tests.models.made import crops, dataset  # noqa: E402
 from tests.parts import FRAMES, labels  # noqa: E402
 
@@ -133,8 +134,7 @@ def check_shipped_frames(folder: Path) -> None:
     (folder / "frames").symlink_to(FRAMES)
     (folder / "labels.json").symlink_to(FRAMES / "labels.json")
     inspector = Inspector(
-        RingNetwork(RING_MODEL),
-        Classifier(MODEL),
+        load_networks(NETWORKS),
         weld=WeldSettings(),
         quality=QualitySettings(),
         model=ModelSettings(),

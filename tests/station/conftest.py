@@ -2,25 +2,30 @@ import pytest
 
 from station.classify.onnx import Classifier, RingNetwork
 from station.inspection.inspector import Inspector
+from station.inspection.networks import Networks, load_networks
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
-from tests.conftest import MODEL, RING_MODEL
+from tests.conftest import NETWORKS
 
 
 @pytest.fixture(scope="session")
-def classifier() -> Classifier:
+def networks() -> Networks:
+    """The shipped networks."""
+    return load_networks(NETWORKS)
+
+
+@pytest.fixture(scope="session")
+def classifier(networks: Networks) -> Classifier:
     """The shipped model."""
-    return Classifier(MODEL)
+    return networks.classifier
 
 
 @pytest.fixture(scope="session")
-def ring_network() -> RingNetwork:
+def ring_network(networks: Networks) -> RingNetwork:
     """The shipped ring network."""
-    return RingNetwork(RING_MODEL)
+    return networks.ring
 
 
 @pytest.fixture(scope="session")
-def inspector(ring_network: RingNetwork, classifier: Classifier) -> Inspector:
+def inspector(networks: Networks) -> Inspector:
     """The shipped model with default limits."""
-    return Inspector(
-        ring_network, classifier, weld=WeldSettings(), quality=QualitySettings(), model=ModelSettings()
-    )
+    return Inspector(networks, weld=WeldSettings(), quality=QualitySettings(), model=ModelSettings())

@@ -4,11 +4,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from station.classify.onnx import Classifier, Judged, RingNetwork
+from station.classify.onnx import Classifier, Judged
 from station.defects import Reason
 from station.domain import SEGMENTS, Image, Inspection, Unseen, Verdict
 from station.errors import ModelError
 from station.inspection.inspector import Inspector
+from station.inspection.networks import Networks
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from tests.parts import label_with, labels, ok_inspection, segment_quality
 
@@ -76,16 +77,13 @@ def test_wrong_exposure_is_not_judged(
 
 def test_a_failing_model_is_never_ok(
     frames: dict[str, Image],
-    ring_network: RingNetwork,
-    classifier: Classifier,
+    networks: Networks,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def fail(_self: Classifier, _crops: Image) -> Judged:
         raise ModelError("out of memory")
 
-    inspector = Inspector(
-        ring_network, classifier, weld=WeldSettings(), quality=QualitySettings(), model=ModelSettings()
-    )
+    inspector = Inspector(networks, weld=WeldSettings(), quality=QualitySettings(), model=ModelSettings())
     monkeypatch.setattr(Classifier, "__call__", fail)
     judged = inspector.inspect(frames[label_with("OK")["frame"]])
     assert (judged.verdict, judged.reason) == (Verdict.ERROR, Reason.MODEL_FAILED)

@@ -118,6 +118,7 @@ def test_the_scale_of_the_settings_and_that_of_the_option_give_the_same_right_ve
     settings.write_text(
         f'[camera]\nkind = "replay"\nfolder = "."\n[weld]\num_per_px = {um_per_px}\n'
         f'[model]\npath = "{MODEL}"\nring_path = "{SHIPPED / "ring.onnx"}"\n'
+        f'seen_path = "{SHIPPED / "seen.onnx"}"\n'
     )
     found = replayed(tmp_path, tmp_path / "a.json", "--um-per-px", str(um_per_px))
     assert found == replayed(tmp_path, tmp_path / "b.json", "-c", str(settings))
@@ -257,7 +258,9 @@ def test_an_archive_is_judged_as_on_the_line_to_the_bit(
 def test_a_candidate_is_compared_with_the_line(
     archive: Path, tmp_path: Path, frames: dict[str, Image], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    networks = f'path = "{MODEL}"\nring_path = "{SHIPPED / "ring.onnx"}"\n'
+    networks = (
+        f'path = "{MODEL}"\nring_path = "{SHIPPED / "ring.onnx"}"\nseen_path = "{SHIPPED / "seen.onnx"}"\n'
+    )
     path = tmp_path / "station.toml"
     path.write_text(
         f'[camera]\nkind = "replay"\nfolder = "."\n[model]\n{networks}'

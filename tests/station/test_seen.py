@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station.classify.onnx import Classifier, RingNetwork
 from station.defects import KINDS, Reason
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, Image, Inspection, Ring, Unseen, Verdict
 from station.engine.plc_result import plc_result
 from station.inspection.inspector import Inspector
+from station.inspection.networks import Networks
 from station.inspection.verdict import Novel, Novelty, decide
 from station.plc.port import Trigger
 from station.settings.model import ModelSettings, WeldSettings
@@ -58,7 +58,7 @@ def test_a_crop_of_one_grey_level_has_no_structure(level: int) -> None:
 
 def dark() -> Image:
     made = np.zeros((SEGMENT_PX, SEGMENT_PX), np.uint8)
-    made[:12] = 200
+    made[32:38] = 200
     return made
 
 
@@ -80,8 +80,8 @@ def test_each_cause_is_told_with_its_number_and_limit() -> None:
     assert causes(qualities, LIMITS) == (*bad, *[None] * (SEGMENTS - len(bad)))
     line = words(qualities, LIMITS)
     assert line == (
-        "segment 1: no structure (contrast 0.010 at grey level 100, limit 0.05); "
-        "segment 2: too dark (mean grey level 3.0, limit 10); "
+        "segment 1: no structure (contrast 0.010 at grey level 100, limit 0.03); "
+        "segment 2: too dark (mean grey level 3.0, limit 15); "
         "segment 3: too bright (90 % of it at grey level 254 or above, limit 50 %); "
         "segment 4: blurred (sharpness 0.001, limit 0.02); "
         "segment 5: no weld between its borders (weld in 0 % of it, limit 25 %); "
@@ -92,7 +92,7 @@ def test_each_cause_is_told_with_its_number_and_limit() -> None:
 def test_segments_of_one_cause_are_told_together_with_the_worst() -> None:
     qualities = [segment_quality()] * SEGMENTS
     qualities[2], qualities[9] = (replace(segment_quality(), mean_dn=dn) for dn in (8.0, 3.0))
-    assert words(qualities, LIMITS) == "segments 3, 10: too dark (mean grey level 3.0, limit 10)"
+    assert words(qualities, LIMITS) == "segments 3, 10: too dark (mean grey level 3.0, limit 15)"
 
 
 def test_every_value_that_is_not_a_number_fails() -> None:
@@ -189,14 +189,13 @@ def test_a_bad_part_stays_nok_while_another_segment_is_covered(
 def test_a_part_unlike_the_training_images_is_not_judged_unless_the_settings_say_so(
     novel: Novel,
     frames: dict[str, Image],
-    ring_network: RingNetwork,
-    classifier: Classifier,
+    networks: Networks,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    classifier = networks.classifier
     monkeypatch.setattr(classifier, "card", replace(classifier.card, novelty_limit=0.5))
     inspector = Inspector(
-        ring_network,
-        classifier,
+        networks,
         weld=WeldSettings(),
         quality=QualitySettings(),
         model=ModelSettings(novel=novel),

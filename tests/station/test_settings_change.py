@@ -27,7 +27,7 @@ from station.journal.journal import Kind, entries
 from station.settings import adjustments
 from station.settings.file import load
 from station.settings.model import Settings
-from tests.conftest import MODEL, RING_MODEL
+from tests.conftest import MODEL, RING_MODEL, SEEN_MODEL
 from tests.desk import StubCamera
 
 REASON = "trial of the limit"
@@ -84,6 +84,7 @@ serial = "0815"
 [model]
 path = "{MODEL}"
 ring_path = "{RING_MODEL}"
+seen_path = "{SEEN_MODEL}"
 """)
     return made
 

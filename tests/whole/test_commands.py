@@ -19,7 +19,7 @@ from station.channel.events import StatusEvent
 from station.channel.zeromq import Subscriber
 from station.plc.map.registers import Offline
 from station.settings.model import ChannelSettings
-from tests.conftest import MODEL, RING_MODEL, ROOT
+from tests.conftest import MODEL, RING_MODEL, ROOT, SEEN_MODEL
 from tests.parts import FRAMES, labels
 
 
@@ -189,7 +189,8 @@ def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> No
     path = tmp_path / "station.toml"
     path.write_text(
         SETTINGS
-        + f'[model]\npath = "{MODEL}"\nring_path = "{RING_MODEL}"\n[plc]\nport = {plc}\n'
+        + f'[model]\npath = "{MODEL}"\nring_path = "{RING_MODEL}"\nseen_path = "{SEEN_MODEL}"\n'
+        + f"[plc]\nport = {plc}\n"
         + f"[channel]\nevents_port = {events}\npreview_port = {preview}\nrequests_port = {requests}\n"
     )
     engine = subprocess.Popen(

@@ -31,7 +31,7 @@ from station.plc.wire.modbus import ModbusClient
 from station.settings import adjustments
 from station.settings.file import load
 from synth.camera.feed import Feed
-from tests.conftest import MODEL, RING_MODEL
+from tests.conftest import MODEL, RING_MODEL, SEEN_MODEL
 from tests.parts import label_with
 
 
@@ -116,6 +116,7 @@ timeout_ms = 4000
 [model]
 path = "{MODEL}"
 ring_path = "{RING_MODEL}"
+seen_path = "{SEEN_MODEL}"
 [archive]
 folder = "records"
 min_free_mb = 1

@@ -22,13 +22,13 @@ from models.evaluation.evaluate import Evaluation, PartResult, evaluate_lot
 from station.__main__ import main
 from station.analysis.report.template import UNSEEN, render
 from station.archive.writer import Archive
-from station.classify.onnx import Classifier, RingNetwork
 from station.defects import Reason
 from station.domain import Frame, Image, Inspection, Origin
 from station.inspection.inspector import Inspector
+from station.inspection.networks import load_networks
 from station.records import Part
 from station.settings.model import ArchiveSettings, ModelSettings, QualitySettings, WeldSettings
-from tests.conftest import MODEL, RING_MODEL, ROOT
+from tests.conftest import NETWORKS, ROOT
 from tests.parts import FRAMES, label_with, nok_inspection, ok_inspection, provenance
 from tests.station.test_report import NOON
 
@@ -89,8 +89,7 @@ def evaluation(tmp_path_factory: pytest.TempPathFactory) -> Evaluation:
     (lot / "frames").symlink_to(FRAMES)
     (lot / "labels.json").symlink_to(FRAMES / "labels.json")
     inspector = Inspector(
-        RingNetwork(RING_MODEL),
-        Classifier(MODEL),
+        load_networks(NETWORKS),
         weld=WeldSettings(),
         quality=QualitySettings(),
         model=ModelSettings(),

@@ -34,7 +34,7 @@ from station.plc.map.registers import CommandCode, Flags, VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.settings.model import Settings
 from synth.camera.feed import Feed
-from tests.conftest import MODEL, RING_MODEL
+from tests.conftest import MODEL, RING_MODEL, SEEN_MODEL
 from tests.parts import label_with, labels
 
 WINDOW_S = 60.0
@@ -106,7 +106,12 @@ def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
                 "reconnect_s": 0.1,
                 "timeout_ms": 10_000,
             },
-            "model": {"path": MODEL, "ring_path": RING_MODEL, "reference_path": reference},
+            "model": {
+                "path": MODEL,
+                "ring_path": RING_MODEL,
+                "seen_path": SEEN_MODEL,
+                "reference_path": reference,
+            },
             "archive": {
                 "folder": tmp_path / "records",
                 "min_free_mb": 1,
