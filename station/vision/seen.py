@@ -16,7 +16,6 @@ from station.settings.quality import QualitySettings
 from station.vision.locate import MIN_PRESENCE
 from station.vision.quality import DARK_DN, SATURATED_DN
 
-
 MIDDLE = slice(32, 96)
 """Rows of a crop that are measured: the weld, as what lies beside it may be dark, bright or plain."""
 
