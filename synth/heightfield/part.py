@@ -15,7 +15,7 @@ from synth.heightfield.sensor import photograph
 from synth.heightfield.shade import draw_light, shade, shadow
 from synth.heightfield.sheet import FINISHES
 from synth.heightfield.sheets import Joint, make_sheets
-from synth.heightfield.surface import Surface
+from synth.heightfield.surface import Place, Surface
 from synth.heightfield.weld import FAMILIES as WELDS
 from synth.part.ranges import log_uniform, uniform
 from synth.part.streams import Stream, stream
@@ -117,9 +117,21 @@ def picture(seed: int, order: Order) -> Pictured:
     )
     radiance *= np.clip(surface.reflectance, 0.0, 1.2) * shadow(surface.height_mm, grid.cell_mm, depth)
     image = photograph(rng, radiance, surface.x_mm, surface.y_mm, factor=order.factor)
-    middle = order.factor // 2
-    place = np.ascontiguousarray(surface.place[middle :: order.factor, middle :: order.factor])
+    place = most_frequent(surface.place, order.factor)
     return Pictured(image=image, place=place, course=course, weld=weld, sheet=sheet, holes=holes)
+
+
+def most_frequent(places: NDArray[np.uint8], factor: int) -> NDArray[np.uint8]:
+    """Return the most frequent place (H / factor, W / factor) of each pixel, from those of its cells (H, W).
+
+    One cell of each pixel would not do: none lies in the middle of 2 x 2, and the mask would be moved against
+    the image, which is the mean over all of them. Among equally frequent places the highest is taken.
+    """
+    rows, columns = (side // factor for side in places.shape)
+    cells = places.reshape(rows, factor, columns, factor)
+    highest_first = tuple(Place)[::-1]
+    counts = np.stack([(cells == place).sum(axis=(1, 3)) for place in highest_first])
+    return np.asarray(np.array(highest_first, np.uint8)[counts.argmax(axis=0)])
 
 
 def _missing(rng: np.random.Generator, radius_mm: float) -> tuple[tuple[float, float], ...]:

@@ -7,10 +7,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from synth.errors import SynthError
 from synth.heightfield.holes import FAMILIES as HOLES
-from synth.heightfield.part import ORDERS, picture
+from synth.heightfield.part import ORDERS, most_frequent, picture
 from synth.heightfield.shade import ROUGHNESSES, Light, shade, table
 from synth.heightfield.sheet import FINISHES
 from synth.heightfield.surface import Place
@@ -83,6 +85,28 @@ def test_without_a_weld_nothing_is_marked_on_the_ring() -> None:
 
     assert drawn.course is None
     assert not np.any(drawn.place == Place.BARE_JOINT)
+
+
+@given(st.integers(1, 4), st.integers(0, 10_000))
+@settings(max_examples=30)
+def test_the_mask_of_a_pixel_is_that_of_most_of_its_cells(factor: int, seed: int) -> None:
+    cells = np.random.default_rng(seed).integers(0, 4, (6 * factor, 5 * factor), dtype=np.uint8)
+    mask = most_frequent(cells, factor)
+    assert mask.shape == (6, 5)
+    for row in range(6):
+        for column in range(5):
+            block = cells[row * factor : (row + 1) * factor, column * factor : (column + 1) * factor]
+            counts = np.bincount(block.ravel(), minlength=4)
+            assert counts[mask[row, column]] == counts.max()
+
+
+@given(st.integers(1, 4), st.floats(25, 35), st.floats(25, 35))
+@settings(max_examples=30)
+def test_a_mask_is_not_moved_against_the_mean_of_its_cells(factor: int, x_px: float, y_px: float) -> None:
+    rows, columns = (np.indices((60 * factor, 60 * factor)) + 0.5) / factor - 0.5
+    mask = most_frequent((np.hypot(columns - x_px, rows - y_px) < 20).astype(np.uint8), factor)
+    found_rows, found_columns = np.nonzero(mask)
+    assert (found_columns.mean(), found_rows.mean()) == pytest.approx((x_px, y_px), abs=0.1)
 
 
 def test_the_same_seed_gives_the_same_picture_and_another_one_does_not() -> None:
