@@ -14,7 +14,7 @@ from typing import get_args, get_type_hints
 
 from station.channel.requests import EndService, LogOut, ReloadSettings, RemoveUser, Request
 from station.defects import Reason
-from station.domain import Origin, Verdict
+from station.domain import Origin, Unseen, Verdict
 from station.engine.rights import check
 from station.errors import LoginError
 from station.journal.journal import Kind
@@ -55,7 +55,7 @@ _WORD = re.compile(r"[A-Za-z]{2}")
 
 def window_words() -> list[str]:
     """Return all words that the window looks up in the context "data", each once, in a stable order."""
-    words = [str(word) for kind in (Verdict, Reason, Origin, Kind, Opinion, State) for word in kind]
+    words = [str(word) for kind in (Verdict, Reason, Unseen, Origin, Kind, Opinion, State) for word in kind]
     words += [text for explained in TEXTS.values() for text in (explained.cause, explained.action)]
     words += [level.name.lower() for level in Level]
     words += [*PARTIES, *get_args(get_type_hints(LogOut)["why"]), *_refused_levels()]

@@ -12,6 +12,7 @@ from station.classify.decision import rejected_kinds
 from station.classify.thresholds import Thresholds
 from station.defects import Reason
 from station.domain import Purpose, Verdict
+from station.inspection.verdict import Novel, Novelty, decide
 from station.records import Record
 from station.settings.model import QualitySettings
 from station.vision.quality import gate
@@ -34,7 +35,7 @@ class Flip:
     """Score of NOK of this segment."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class WhatIf:
     """Result of a what-if."""
 
@@ -46,11 +47,24 @@ class WhatIf:
     """Parts that were OK, and would be NOK or not judged."""
     unknown: int
     """Number of parts without scores that would pass the new quality gate; their verdict is unknown."""
+    unlike: int
+    """Number of parts unlike the training images, without any other fault: OK with model.novel = flag, not
+    judged with error."""
 
 
-def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualitySettings) -> WhatIf:
-    """Return what other limits would change for the recorded parts; masters and test images do not count."""
-    compared, unknown = 0, 0
+def what_if(
+    records: Iterable[Record],
+    thresholds: Thresholds,
+    quality: QualitySettings,
+    *,
+    novelty_limit: float,
+    novel: Novel,
+) -> WhatIf:
+    """Return what other limits would change for the recorded parts; masters and test images do not count.
+
+    `novelty_limit` is that of the classifier; `novel` is what becomes of parts above it.
+    """
+    compared, unknown, unlike = 0, 0, 0
     released: list[Flip] = []
     rejected: list[Flip] = []
     for record in records:
@@ -62,8 +76,17 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
             unknown += inspection.reason in QUALITY and not fails_gate
             continue
         compared += 1
-        bad = any(rejected_kinds(inspection.scores, inspection.findings, thresholds))
-        after = Verdict.ERROR if fails_gate else Verdict.NOK if bad else Verdict.OK
+        rejected_now = rejected_kinds(inspection.scores, inspection.findings, thresholds)
+        novelty = Novelty(inspection.novelty or 0.0, novelty_limit, novel)
+        after, reason, _ = decide(
+            rejected_now, inspection.findings, inspection.segment_quality, limits=quality, novelty=novelty
+        )
+        if fails_gate:
+            after = Verdict.ERROR
+        else:
+            unlike += novelty.value > novelty_limit and (
+                after is Verdict.OK or reason is Reason.UNLIKE_TRAINING
+            )
         if (after is Verdict.OK) == (record.verdict is Verdict.OK):
             continue
         worst = max(range(len(inspection.scores)), key=lambda i: inspection.scores[i].nok)
@@ -76,4 +99,10 @@ def what_if(records: Iterable[Record], thresholds: Thresholds, quality: QualityS
             score=inspection.scores[worst].nok,
         )
         (released if after is Verdict.OK else rejected).append(flip)
-    return WhatIf(compared, tuple(released), tuple(rejected), unknown)
+    return WhatIf(
+        compared=compared,
+        released=tuple(released),
+        rejected=tuple(rejected),
+        unknown=unknown,
+        unlike=unlike,
+    )

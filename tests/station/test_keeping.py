@@ -25,7 +25,7 @@ from station.errors import RecordError
 from station.files.image import read_image
 from station.records import Part
 from station.settings.model import ArchiveSettings, KeepSettings
-from tests.parts import label_with, nok_inspection, ok_inspection, provenance
+from tests.parts import label_with, nok_inspection, ok_inspection, provenance, unseen_inspection
 
 NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)
 ROOMY = {"min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1}
@@ -386,6 +386,27 @@ def test_crops_are_exported_by_what_was_found(
     }
     assert (len(crops["ok"]), crops["hole"], crops["missing_weld"]) == (3 * 21 - 1, ["00000004_04.png"], [])
     assert read_image(tmp_path / "out" / "hole" / "00000004_04.png").shape == (128, 128)
+
+
+def test_a_segment_that_was_not_seen_is_exported_as_unknown_and_never_as_a_crop_to_learn_from(
+    tmp_path: Path, frames: dict[str, Image]
+) -> None:
+    folder = tmp_path / "a"
+    archive = Archive(ArchiveSettings(folder=folder, **ROOMY))
+    frame = Frame(frames[label_with("OK")["frame"]], NOW, "cam", Origin.SIMULATED)
+    part = Part("P1", 1, Origin.SIMULATED)
+    archive.commit(archive.begin(frame), unseen_inspection(), part, provenance(), now=NOW)
+    archive.close()
+    for form in ("csv", "dfq", "dataset"):
+        assert main(["records", "export", str(folder), str(tmp_path / form), "--format", form]) == 0
+    (row,) = csv.DictReader((tmp_path / "csv").read_text().splitlines())
+    assert (row["p_nok_4"], row["p_nok_5"]) == (f"{unseen_inspection().scores[3].nok}", "")
+    assert row["detail"] == unseen_inspection().detail
+    assert (row["worst_mean_dn"], row["worst_dark_fraction"], row["worst_visible"]) == ("3.0", "0.91", "")
+    (values,) = [line for line in (tmp_path / "dfq").read_text("cp1252").splitlines() if "\x0f" in line]
+    assert [value.split("\x14")[1] for value in values.split("\x0f")] == ["0"] * 4 + ["255"] + ["0"] * 16
+    crops = {path.name for path in (tmp_path / "dataset" / "ok").iterdir()}
+    assert crops == {f"00000001_{number:02d}.png" for number in range(1, 22) if number != 5}
 
 
 def test_parquet_without_its_package_is_said(

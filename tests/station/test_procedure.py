@@ -1,5 +1,6 @@
 """Part, test image and master go one way: the same judgement and record, but only a trigger is answered."""
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -233,6 +234,23 @@ def test_images_too_small_for_the_weld_are_named_in_the_log(
     assert rig.event.record.verdict is Verdict.ERROR
     (line,) = [record.getMessage() for record in caplog.records if record.levelname == "ERROR"]
     assert "images of 1600 x 1000 px are too small for a radius of 5.564 + 0.156 mm at 13 µm/px" in line
+
+
+def test_the_numbers_of_a_part_that_was_not_judged_reach_record_event_journal_and_log(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    journal: list[str] = []
+    monkeypatch.setattr(AlarmLog, "add_event", lambda _self, _code, what: journal.append(what))
+    rig.camera.image = np.full_like(rig.camera.image, 90)
+    rig.procedure.inspect_part(TRIGGER, rig.loaded)
+    detail = rig.event.record.inspection.detail
+    assert detail is not None
+    assert re.fullmatch(r"no weld found: the best ring scores -?\d\.\d\d, the minimum is 0\.22", detail)
+    (entry,) = read_records(rig.folder)
+    assert entry.record is not None
+    assert entry.record.inspection.detail == detail
+    assert journal == [f"part {entry.record.inspection_id}, {detail}"]
+    assert detail in caplog.text
 
 
 def test_a_trigger_that_got_no_answer_is_shown_as_error_without_a_record(rig: Rig) -> None:

@@ -10,21 +10,33 @@ from hypothesis import strategies as st
 
 from station.analysis.export import export
 from station.analysis.statistics import shift_of, summarise
-from station.analysis.what_if import what_if
+from station.analysis.what_if import WhatIf, what_if
 from station.archive.reader import read_records
 from station.archive.room import Room
 from station.archive.writer import Archive
+from station.classify.thresholds import Thresholds
 from station.defects import Reason
 from station.domain import SEGMENTS, Frame, Image, Inspection, Origin, Purpose, Verdict
 from station.engine.health import StationState, alarms, health
 from station.errors import LoginError
+from station.inspection.verdict import Novel
 from station.journal.review_writer import save_review
 from station.journal.reviews import Opinion, Review, State, possible, reviews
 from station.plc.map.alarms import Alarm
 from station.plc.map.registers import Offline
 from station.records import Part, Record
 from station.settings.model import ArchiveSettings, QualitySettings
-from tests.parts import label_with, nok_inspection, ok_inspection, provenance, record, scores_of, thresholds
+from tests.parts import (
+    label_with,
+    nok_inspection,
+    ok_inspection,
+    provenance,
+    record,
+    scores_of,
+    segment_quality,
+    thresholds,
+    unseen_inspection,
+)
 
 OPINIONS = st.dictionaries(st.sampled_from(["Ada", "Bob", "Cy"]), st.sampled_from(list(Opinion)))
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
@@ -123,14 +135,20 @@ def judged(scores: list[tuple[float, float, float]], number: int = 1) -> Record:
     )
 
 
+def asked_of(
+    parts: list[Record], limits: Thresholds, quality: QualitySettings, novel: Novel = "error"
+) -> WhatIf:
+    return what_if(parts, limits, quality, novelty_limit=1.8, novel=novel)
+
+
 @given(st.lists(SCORES, min_size=SEGMENTS, max_size=SEGMENTS), st.floats(0.01, 0.99), st.floats(0.01, 0.99))
 def test_what_if_with_the_same_limits_changes_nothing_and_stricter_ones_release_nothing(
     scores: list[tuple[float, float, float]], hole: float, missing: float
 ) -> None:
     part = judged(scores)
-    same = what_if([part], thresholds(0.5, 0.5), QualitySettings())
+    same = asked_of([part], thresholds(0.5, 0.5), QualitySettings())
     assert (same.released, same.rejected) == ((), ())
-    asked = what_if([part], thresholds(hole, missing), QualitySettings())
+    asked = asked_of([part], thresholds(hole, missing), QualitySettings())
     if hole <= 0.5 and missing <= 0.5:
         assert asked.released == ()
     if hole >= 0.5 and missing >= 0.5:
@@ -146,11 +164,32 @@ def test_what_if_counts_parts_alone_and_says_what_nobody_knows() -> None:
         replace(record(nok_inspection(), 3), purpose=Purpose.TEST),
         record(dark, 4),
     ]
-    found = what_if(parts, thresholds(0.95, 0.95), QualitySettings(min_sharpness=0.0))
+    found = asked_of(parts, thresholds(0.95, 0.95), QualitySettings(min_sharpness=0.0))
     assert (found.compared, found.unknown) == (2, 1)
     assert [(f.inspection_id, f.before, f.after, f.segment) for f in found.released] == []
-    sharper = what_if(parts, thresholds(0.5, 0.5), QualitySettings(min_sharpness=9.0))
+    sharper = asked_of(parts, thresholds(0.5, 0.5), QualitySettings(min_sharpness=9.0))
     assert [(f.inspection_id, f.after) for f in sharper.rejected] == [(1, Verdict.ERROR)]
+
+
+def test_what_if_shows_both_ways_with_parts_unlike_the_training_images() -> None:
+    flagged = replace(ok_inspection(), novelty=2.5)
+    unlike = replace(flagged, verdict=Verdict.ERROR, reason=Reason.UNLIKE_TRAINING)
+    parts = [record(flagged, 1), record(unlike, 2), record(replace(nok_inspection(), novelty=2.5), 3)]
+    for novel, released, rejected in (("error", [], [1]), ("flag", [2], [])):
+        found = asked_of(parts, thresholds(0.5, 0.5), QualitySettings(), novel)  # type: ignore[arg-type]
+        assert [flip.inspection_id for flip in found.released] == released
+        assert [flip.inspection_id for flip in found.rejected] == rejected
+        assert found.unlike == 2, "whatever is set, the number of parts that hang on it is shown"
+
+
+def test_what_if_looks_at_the_segments_with_the_limits_asked() -> None:
+    parts = [record(ok_inspection(), 1), record(unseen_inspection(), 2)]
+    as_now = asked_of(parts, thresholds(0.5, 0.5), QualitySettings())
+    assert (as_now.released, as_now.rejected) == ((), ())
+    lax = QualitySettings(min_segment_mean_dn=1.0, max_segment_dark_fraction=1.0)
+    assert [flip.inspection_id for flip in asked_of(parts, thresholds(0.5, 0.5), lax).released] == [2]
+    strict = asked_of(parts, thresholds(0.5, 0.5), QualitySettings(min_segment_contrast=0.5))
+    assert [flip.after for flip in strict.rejected] == [Verdict.ERROR]
 
 
 @pytest.mark.parametrize(
@@ -182,6 +221,23 @@ def test_statistics_count_parts_by_shift_recipe_reason_and_segment() -> None:
     assert [p.number for p in summary.points] == [1, 2, 3]
     assert summary.points[0].cycle_ms == 54.0
     assert summary.thresholds == (0.5, 0.5)
+
+
+def test_the_worst_segment_of_a_part_is_a_point_of_the_trends() -> None:
+    mixed = [segment_quality()] * SEGMENTS
+    mixed[3] = replace(segment_quality(), mean_dn=20.0, contrast=0.9, visible=0.4)
+    mixed[7] = replace(segment_quality(), saturated_fraction=0.2, weld=0.5, visible=0.9)
+    parts = [
+        record(replace(ok_inspection(), segment_quality=tuple(mixed)), 1),
+        record(Inspection.error(Reason.NO_FRAME), 2),
+    ]
+    first, second = summarise(parts).points
+    assert first.worst_segment == replace(
+        segment_quality(), mean_dn=20.0, saturated_fraction=0.2, weld=0.5, visible=0.4
+    )
+    assert second.worst_segment is None
+    (none_seen,) = summarise([record(unseen_inspection(), 3)]).points
+    assert none_seen.worst == pytest.approx(0.01), "of the segments that were seen"
 
 
 BOOLS = st.booleans()

@@ -346,6 +346,38 @@
         <translation>Anmeldung</translation>
     </message>
     <message>
+        <source>segment not seen</source>
+        <translation>Segment nicht gesehen</translation>
+    </message>
+    <message>
+        <source>unlike the training images</source>
+        <translation>den Trainingsbildern unähnlich</translation>
+    </message>
+    <message>
+        <source>no structure</source>
+        <translation>keine Struktur</translation>
+    </message>
+    <message>
+        <source>too dark</source>
+        <translation>zu dunkel</translation>
+    </message>
+    <message>
+        <source>too bright</source>
+        <translation>zu hell</translation>
+    </message>
+    <message>
+        <source>blurred</source>
+        <translation>unscharf</translation>
+    </message>
+    <message>
+        <source>no weld between its borders</source>
+        <translation>keine Naht zwischen den Grenzen</translation>
+    </message>
+    <message>
+        <source>covered</source>
+        <translation>verdeckt</translation>
+    </message>
+    <message>
         <source>login failed</source>
         <translation>Anmeldung gescheitert</translation>
     </message>
@@ -468,6 +500,14 @@
     <message>
         <source>judge the part again; if it comes back, check that a part is in the nest and in the camera&apos;s view</source>
         <translation>Teil neu prüfen; tritt es erneut auf: prüfen, ob ein Teil in der Aufnahme und im Blickfeld der Kamera liegt</translation>
+    </message>
+    <message>
+        <source>judge the part again; if it comes back, check light, glass and nest for dirt, shadow and glare</source>
+        <translation>Teil neu prüfen; tritt es erneut auf: Licht, Glas und Nest auf Schmutz, Schatten und Reflexe prüfen</translation>
+    </message>
+    <message>
+        <source>judge the part again; if it comes back, check light, focus and surface</source>
+        <translation>Teil neu prüfen; tritt es erneut auf: Licht, Fokus und Oberfläche prüfen</translation>
     </message>
     <message>
         <source>operator</source>
@@ -932,6 +972,10 @@
         <translation>geduldet</translation>
     </message>
     <message>
+        <source>worst segment: brightness {mean:.0f} · contrast {contrast:.2f} · sharpness {sharpness:.3f} · saturated {saturated:.1%} · weld {weld:.0%} · visible {visible}</source>
+        <translation>schlechtestes Segment: Helligkeit {mean:.0f} · Kontrast {contrast:.2f} · Schärfe {sharpness:.3f} · übersteuert {saturated:.1%} · Naht {weld:.0%} · sichtbar {visible}</translation>
+    </message>
+    <message>
         <source>yes</source>
         <translation>ja</translation>
     </message>
@@ -1115,6 +1159,10 @@
     <message>
         <source>cycle</source>
         <translation>Takt</translation>
+    </message>
+    <message>
+        <source>worst segment</source>
+        <translation>schlechtestes Segment</translation>
     </message>
     <message>
         <source>parts</source>
@@ -1465,6 +1513,10 @@
         <translation>{n} Teile wurden ausgelassen: von einem anderen Modell beurteilt oder nicht lesbar.</translation>
     </message>
     <message>
+        <source>{n} parts are unlike the training images: OK with model.novel = flag, not judged with error.</source>
+        <translation>{n} Teile sind den Trainingsbildern unähnlich: OK mit model.novel = flag, nicht beurteilt mit error.</translation>
+    </message>
+    <message>
         <source>Saved and in use.</source>
         <translation>Gespeichert und in Gebrauch.</translation>
     </message>
@@ -1658,6 +1710,18 @@
         <translation>Zähler der Seite Live und der SPS auf 0 setzen. Das Journal hält es fest.</translation>
     </message>
     <message>
+        <source>whole strip</source>
+        <translation>ganzer Streifen</translation>
+    </message>
+    <message>
+        <source>worst segment</source>
+        <translation>schlechtestes Segment</translation>
+    </message>
+    <message>
+        <source>Dirt on the glass shows in the worst segment weeks before it costs an OK.</source>
+        <translation>Schmutz auf dem Glas zeigt sich im schlechtesten Segment Wochen, bevor er ein OK kostet.</translation>
+    </message>
+    <message>
         <source>worst score of a part</source>
         <translation>schlechtester Wert eines Teils</translation>
     </message>
@@ -1672,6 +1736,22 @@
     <message>
         <source>distance to the training images</source>
         <translation>Abstand zu den Trainingsbildern</translation>
+    </message>
+    <message>
+        <source>brightness</source>
+        <translation>Helligkeit</translation>
+    </message>
+    <message>
+        <source>contrast</source>
+        <translation>Kontrast</translation>
+    </message>
+    <message>
+        <source>fraction with a weld</source>
+        <translation>Anteil mit Naht</translation>
+    </message>
+    <message>
+        <source>visible fraction</source>
+        <translation>sichtbarer Anteil</translation>
     </message>
     <message>
         <source>inspection time</source>

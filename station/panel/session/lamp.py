@@ -97,7 +97,9 @@ def _of_part(part: PartEvent, masters_due: bool, strength: float) -> Lamp:
     if part.reported is VerdictCode.ERROR and record.verdict is not Verdict.ERROR:
         reason = LATE
     if part.reported is VerdictCode.ERROR:
-        return Lamp(word="ERROR", symbol="!", tone=Tone.WARN, strength=strength, detail=reason)
+        numbers = (record.inspection.detail or "") if record.verdict is Verdict.ERROR else ""
+        more = numbers.removeprefix(f"{reason}: ")
+        return Lamp(word="ERROR", symbol="!", tone=Tone.WARN, strength=strength, detail=reason, more=more)
     if part.reported is VerdictCode.TEST and record.origin is Origin.REPLAY:
         return _test(strength, detail="replay", more=verdict)
     if part.reported is VerdictCode.TEST:

@@ -7,16 +7,16 @@ from PySide6.QtCore import Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
+from station.analysis.worst_segment import worst_segment
 from station.archive.reader import Row, read_record
 from station.classify.thresholds import Thresholds
 from station.defects import KINDS
-from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Quality, Ring, Verdict
+from station.domain import SEGMENT_DEG, SEGMENTS, Finding, Inspection, Quality, Ring, Verdict
 from station.errors import ImageError, LocateError
 from station.journal.reviews import Marks
 from station.panel.look.purposes import PURPOSE_WORDS
 from station.panel.look.words import data, translate
 from station.panel.widgets.card import Facts, Table, label, titled
-from station.panel.widgets.weld.previews import nok_scores
 from station.panel.widgets.weld.recorded import DELETED, NO_IMAGE, of_record
 from station.panel.widgets.weld.strip_view import StripView
 from station.panel.widgets.weld.weld_view import WeldView
@@ -71,6 +71,7 @@ class RecordView(QWidget):
             }
         )
         self.problem: QLabel = label("", "problem", wrap=True)
+        self.worst: QLabel = label("–", "quiet")
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.addWidget(self.weld, 0, 0)
@@ -80,7 +81,8 @@ class RecordView(QWidget):
         side.addStretch(1)
         grid.addLayout(side, 0, 1)
         grid.addWidget(self.strip, 1, 0, 1, 2)
-        grid.addWidget(titled(translate("history", "findings"), self.findings), 2, 0, 1, 2)
+        grid.addWidget(self.worst, 2, 0, 1, 2)
+        grid.addWidget(titled(translate("history", "findings"), self.findings), 3, 0, 1, 2)
         grid.setRowStretch(0, 1)
         grid.setColumnStretch(0, 1)
 
@@ -88,11 +90,12 @@ class RecordView(QWidget):
         """Show no record; `why` is given if it cannot be read."""
         self.record, self.strip_shown, self.marks = None, False, {}
         self.problem.setText(why)
+        self.worst.setText("–")
         self.weld.show_weld(
             None,
             translate("history", "The record cannot be read.") if why else translate("history", "no part"),
         )
-        self.strip.show_strip(None, (), ())
+        self.strip.show_strip(None, None)
         self.strip.show_marks({})
         self.findings.fill([])
         self.facts.set(**dict.fromkeys(self.facts.values, "–"))
@@ -121,10 +124,11 @@ class RecordView(QWidget):
         if self.record is None:
             self.show_nothing(message)
             return
-        self.problem.setText(message)
+        self.problem.setText("\n".join(text for text in (message, self.record.inspection.detail) if text))
+        self.worst.setText(_worst(self.record.inspection))
         self.marks = {}
         record, strip = self.record, self._show_image(folder, self.record)
-        self.strip.show_strip(strip, nok_scores(record), record.inspection.nok)
+        self.strip.show_strip(strip, record.inspection)
         self.strip.show_marks({})
         self.strip_shown = strip is not None
         self.findings.fill(
@@ -188,6 +192,26 @@ def _finding_row(finding: Finding, nok: tuple[bool, ...]) -> tuple[str, ...]:
 
 def _quality(quality: Quality) -> str:
     return f"{quality.mean_dn:.0f} · {quality.sharpness:.3f} · {quality.saturated_share:.1%}"
+
+
+def _worst(inspection: Inspection) -> str:
+    """Return the values of the worst segment as one line."""
+    worst = worst_segment(inspection)
+    if worst is None:
+        return "–"
+    visible = "–" if worst.visible is None else f"{worst.visible:.0%}"
+    return translate(
+        "history",
+        "worst segment: brightness {mean:.0f} · contrast {contrast:.2f} · sharpness {sharpness:.3f} · "
+        "saturated {saturated:.1%} · weld {weld:.0%} · visible {visible}",
+    ).format(
+        mean=worst.mean_dn,
+        contrast=worst.contrast,
+        sharpness=worst.sharpness,
+        saturated=worst.saturated_fraction,
+        weld=worst.weld,
+        visible=visible,
+    )
 
 
 def _segments(finding: Finding) -> list[int]:

@@ -14,11 +14,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from station.channel.events import PartEvent
 from station.channel.requests import Answer, TakeTestImage
-from station.domain import SEGMENTS, Purpose
+from station.domain import SEGMENTS, Inspection, Purpose
 from station.journal.users import Level
 from station.panel.look.words import data, translate
+from station.panel.pages.live.facts import caption, cycle_ms, novelty, worst
 from station.panel.pages.live.score_history import ScoreHistory
 from station.panel.pages.live.verdict_lamp import VerdictLamp
 from station.panel.pages.page import Page
@@ -28,7 +28,7 @@ from station.panel.session.session import Session
 from station.panel.widgets.card import Facts, label, titled
 from station.panel.widgets.progress import Progress
 from station.panel.widgets.weld.clock_face import ClockFace
-from station.panel.widgets.weld.previews import drawn, drawn_part, nok_scores, strip_image
+from station.panel.widgets.weld.previews import drawn, drawn_part, strip_image
 from station.panel.widgets.weld.strip_view import StripView
 from station.panel.widgets.weld.weld_view import WeldView
 from station.panel.widgets.work import WorkBar
@@ -52,6 +52,7 @@ class LivePage(Page):
                 "recipe": translate("live", "recipe"),
                 "cycle": translate("live", "cycle"),
                 "novelty": translate("live", "image"),
+                "segment": translate("live", "worst segment"),
                 "parts": translate("live", "parts"),
                 "ok": "OK",
                 "nok": "NOK",
@@ -156,14 +157,13 @@ class LivePage(Page):
         self.facts.set(
             part=record.inspection_id,
             serial=record.serial or "–",
-            novelty=_novelty(last),
-            cycle=f"{_cycle_ms(last):.0f} ms",
+            novelty=novelty(last),
+            cycle=f"{cycle_ms(last):.0f} ms",
+            segment=worst(record.inspection),
         )
         counts = [0] * SEGMENTS
-        for part in self._session.received.parts:
-            for index, nok in enumerate(
-                part.record.inspection.nok if part.record.purpose is Purpose.PART else ()
-            ):
+        for inspection in self._inspections():
+            for index, nok in enumerate(inspection.nok):
                 counts[index] += nok
         self.clock.show_counts(tuple(counts))
         if self._angles.currentWidget() is self.scores:
@@ -171,6 +171,11 @@ class LivePage(Page):
         self._show_image()
         self._show_pinned()
         self.age()
+
+    def _inspections(self) -> list[Inspection]:
+        """Return the inspections of the newest parts, without masters and test images."""
+        parts = self._session.received.parts
+        return [part.record.inspection for part in parts if part.record.purpose is Purpose.PART]
 
     def _on_preview(self) -> None:
         self._show_image()
@@ -184,12 +189,9 @@ class LivePage(Page):
             shown = part.record.inspection_id, preview is not None
             if shown != self._nok_shown:
                 self._nok_shown = shown
-                self.nok_text.setText(_caption(part))
-                self.nok_strip.show_strip(
-                    None if preview is None else strip_image(preview),
-                    nok_scores(part.record),
-                    part.record.inspection.nok,
-                )
+                self.nok_text.setText(caption(part))
+                strip = None if preview is None else strip_image(preview)
+                self.nok_strip.show_strip(strip, part.record.inspection)
 
     def _show_image(self) -> None:
         """Show the image of the newest part; until it comes, darken the one before and say so."""
@@ -200,13 +202,13 @@ class LivePage(Page):
         if preview is not None and shows(preview, last):
             self._held = self.hold.isChecked()
             held = "  ·  " + translate("live", "HELD") if self._held else ""
-            self.weld.show_weld(drawn_part(preview, last), caption=_caption(last) + held)
-            self.strip.show_strip(strip_image(preview), nok_scores(last.record), last.record.inspection.nok)
+            self.weld.show_weld(drawn_part(preview, last), caption=caption(last) + held)
+            self.strip.show_strip(strip_image(preview), last.record.inspection)
         else:
             before = "" if preview is None else f"\n({preview.inspection_id})"
             note = translate("live", "no image of this part") + before
             self.weld.show_weld(None if preview is None else drawn(preview), note)
-            self.strip.show_strip(None, nok_scores(last.record), last.record.inspection.nok)
+            self.strip.show_strip(None, last.record.inspection)
 
     def age(self) -> None:
         """Show the lamp as it is now: it fades with time."""
@@ -246,17 +248,14 @@ class LivePage(Page):
     def _show_scores(self, segment: int) -> None:
         """Show the scores of one segment over the newest parts, the oldest first."""
         self._segment = segment
-        inspections = [
-            part.record.inspection
-            for part in self._session.received.parts
-            if part.record.purpose is Purpose.PART and part.record.inspection.scores
+        shown = [
+            (score, inspection.nok[segment])
+            for inspection in self._inspections()
+            if inspection.scores and (score := inspection.nok_scores[segment]) is not None
         ]
         parts, name = translate("live", "parts"), translate("live", "segment")
-        self.scores.show_scores(
-            [inspection.scores[segment].nok for inspection in inspections],
-            [inspection.nok[segment] for inspection in inspections],
-            f"{name} {segment + 1} · {len(inspections)} {parts}",
-        )
+        foot = f"{name} {segment + 1} · {len(shown)} {parts}"
+        self.scores.show_scores([score for score, _ in shown], [nok for _, nok in shown], foot)
         self._angles.setCurrentWidget(self.scores)
 
     def _open_pinned(self) -> None:
@@ -277,23 +276,3 @@ class LivePage(Page):
         """Stop timer and work."""
         self._ageing.stop()
         self._work.close_work()
-
-
-def _caption(part: PartEvent) -> str:
-    record = part.record
-    return f"{record.inspection_id}  {record.serial}  {record.grabbed_at.astimezone():%H:%M:%S}"
-
-
-def _novelty(part: PartEvent) -> str:
-    """Return how the image of a part compares with the training images."""
-    if part.novel:
-        return translate("live", "UNLIKE TRAINING")
-    if part.drift is not None and part.drift.alarm:
-        return translate("live", "DRIFTING")
-    return translate("live", "known")
-
-
-def _cycle_ms(part: PartEvent) -> float:
-    timing = part.record.inspection.timing
-    steps = (timing.grab_ms, timing.locate_ms, timing.unwrap_ms, timing.classify_ms)
-    return sum(ms for ms in (*steps, part.record_ms, part.publish_ms) if ms is not None)

@@ -24,6 +24,7 @@ from station.panel.pages.setup.limit_fields import (
     quality_of,
     thresholds_of,
 )
+from station.panel.pages.setup.what_if_notes import notes
 from station.panel.pages.setup.what_if_state import Missing, Values, WhatIfState, scored_records
 from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, Table, label, titled
@@ -208,9 +209,13 @@ class RecipePage(Page):
         thresholds, quality = thresholds_of(values), quality_of(values, settings)
 
         def work(progress: Progress) -> tuple[Values, WhatIf, int] | None:
-            model_hash = Classifier(settings.model.path, 1).card.file_hash
-            found = scored_records(folder, values.recipe, model_hash, progress)
-            return None if found is None else (values, what_if(found[0], thresholds, quality), found[1])
+            card = Classifier(settings.model.path, 1).card
+            found = scored_records(folder, values.recipe, card.file_hash, progress)
+            if found is None:
+                return None
+            limit, novel = card.novelty_limit, settings.model.novel
+            asked = what_if(found[0], thresholds, quality, novelty_limit=limit, novel=novel)
+            return values, asked, found[1]
 
         self._work.start(translate("recipe", "Judging the archive again"), work, self._on_done)
         self._refresh_buttons()
@@ -239,17 +244,7 @@ class RecipePage(Page):
                 n=found.compared, released=len(found.released), rejected=len(found.rejected)
             )
         )
-        unknown = translate(
-            "recipe", "{n} images of insufficient quality would now be judged; their verdict is unknown."
-        ).format(n=found.unknown)
-        none = translate(
-            "recipe", "The archive has no parts of this recipe, so the effect of the limits is unknown."
-        )
-        others = translate(
-            "recipe", "{n} parts were left out: judged by another model or not readable."
-        ).format(n=left_out)
-        notes = [text for text, count in ((unknown, found.unknown), (others, left_out)) if count]
-        self.problem.setText(none if not found.compared else " ".join(notes))
+        self.problem.setText(notes(found, left_out))
         self._refresh_buttons()
 
     def _save(self) -> None:

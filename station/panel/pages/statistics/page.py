@@ -1,10 +1,10 @@
 """The page Statistics: yield by shift and recipe, defects by angle and reason, trends with limits, times."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from station.analysis.report.page import report
 from station.analysis.statistics import Summary, summarise
@@ -24,6 +24,7 @@ from station.panel.widgets.weld.clock_face import ClockFace
 from station.panel.widgets.work import WorkBar
 from station.records import Record
 from station.settings.model import for_recipe
+from station.vision.seen import CHECKS
 
 PARTS = (100, 300, 1000, 5000)
 """Numbers of the newest parts to choose from."""
@@ -81,6 +82,15 @@ class StatisticsPage(Page):
         for widget in (self.how_many, self.read_again, self.report, self.zero, self.problem, self._message):
             top.addWidget(widget)
         top.addStretch(1)
+        self.view = Choice()
+        for text in (translate("statistics", "whole strip"), translate("statistics", "worst segment")):
+            self.view.addItem(text)
+        self.view.setToolTip(
+            translate(
+                "statistics", "Dirt on the glass shows in the worst segment weeks before it costs an OK."
+            )
+        )
+        top.insertWidget(1, self.view)
         self.clock = ClockFace()
         self.reasons = Chart(translate("statistics", "reasons"))
         grey_levels = translate("statistics", "grey levels")
@@ -91,17 +101,27 @@ class StatisticsPage(Page):
             "saturated": Chart(translate("statistics", "saturated fraction")),
             "novelty": Chart(translate("statistics", "distance to the training images")),
         }
+        worst = translate("statistics", "worst segment")
+        self.segment_trends = {
+            "mean_dn": Chart(f"{worst}: " + translate("statistics", "brightness"), grey_levels),
+            "contrast": Chart(f"{worst}: " + translate("statistics", "contrast")),
+            "sharpness": Chart(f"{worst}: " + translate("statistics", "sharpness")),
+            "saturated_fraction": Chart(f"{worst}: " + translate("statistics", "saturated fraction")),
+            "weld": Chart(f"{worst}: " + translate("statistics", "fraction with a weld")),
+            "visible": Chart(f"{worst}: " + translate("statistics", "visible fraction")),
+        }
         self.cycle = Chart(translate("statistics", "inspection time"), "ms")
+        trends = self.trends
+        upper = (trends["worst"], trends["mean_dn"], trends["sharpness"])
+        stack = QStackedWidget()
+        stack.addWidget(_in_two_rows((*upper, self.cycle, trends["saturated"], trends["novelty"])))
+        stack.addWidget(_in_two_rows(tuple(self.segment_trends.values())))
+        self.view.currentIndexChanged.connect(stack.setCurrentIndex)
         grid = QGridLayout()
         grid.addWidget(titled(translate("statistics", "shifts and recipes"), self.groups), 0, 0, 1, 6)
         grid.addWidget(titled(translate("statistics", "NOK segments by angle"), self.clock), 0, 6, 1, 3)
         grid.addWidget(self.reasons, 0, 9, 1, 3)
-        trends = self.trends
-        upper = (trends["worst"], trends["mean_dn"], trends["sharpness"])
-        lower = (self.cycle, trends["saturated"], trends["novelty"])
-        for index, chart in enumerate((*upper, *lower)):
-            row, column = divmod(index, 3)
-            grid.addWidget(chart, 1 + row, 4 * column, 1, 4)
+        grid.addWidget(stack, 1, 0, 2, 12)
         for column in range(12):
             grid.setColumnStretch(column, 1)
         for row in range(3):
@@ -171,6 +191,12 @@ class StatisticsPage(Page):
         }
         for key, chart in self.trends.items():
             chart.show_trend([getattr(point, key) for point in summary.points], bad, limits[key])
+        worst = [point.worst_segment for point in summary.points]
+        for check in CHECKS:
+            if check.measured in self.segment_trends:
+                values = [None if own is None else getattr(own, check.measured) for own in worst]
+                limit = float(getattr(quality, check.limit_name))
+                self.segment_trends[check.measured].show_trend(values, bad, [limit])
         self.cycle.show_histogram([point.cycle_ms for point in summary.points])
 
     def _ask_report(self) -> None:
@@ -197,6 +223,16 @@ class StatisticsPage(Page):
         """Stop timer and work."""
         self._first.stop()
         self._work.close_work()
+
+
+def _in_two_rows(charts: Sequence[Chart]) -> QWidget:
+    """Return six charts in two rows."""
+    inside = QWidget()
+    grid = QGridLayout(inside)
+    grid.setContentsMargins(0, 0, 0, 0)
+    for index, chart in enumerate(charts):
+        grid.addWidget(chart, *divmod(index, 3))
+    return inside
 
 
 def _records(folder: Path, limit: int, progress: Progress) -> Iterator[Record]:

@@ -7,7 +7,6 @@ from PySide6.QtGui import QImage
 from station.channel.events import PartEvent, Preview
 from station.domain import Inspection, Ring
 from station.panel.widgets.weld.weld_view import Drawn
-from station.records import Record
 
 
 def drawn(preview: Preview, ring: Ring | None = None) -> Drawn:
@@ -30,14 +29,14 @@ def drawn_part(preview: Preview, part: PartEvent) -> Drawn:
 def drawn_inspection(preview: Preview, inspection: Inspection) -> Drawn:
     """Return a preview with ring, rejected segments and findings of an inspection."""
     plain = drawn(preview, inspection.ring)
-    return replace(plain, segments_nok=inspection.nok, findings=inspection.findings)
+    return replace(
+        plain,
+        segments_nok=inspection.nok,
+        segments_invalid=inspection.invalid,
+        findings=inspection.findings,
+    )
 
 
 def strip_image(preview: Preview) -> QImage | None:
     """Return the strip of a preview, or None if no ring was found."""
     return QImage.fromData(preview.strip_jpeg) if preview.strip_jpeg else None
-
-
-def nok_scores(record: Record) -> tuple[float, ...]:
-    """Return the score of NOK of each segment, 0 to 1."""
-    return tuple(segment.nok for segment in record.inspection.scores)

@@ -31,6 +31,8 @@ class Drawn:
     ring: Ring | None = None
     segments_nok: tuple[bool, ...] = ()
     """True for each rejected segment."""
+    segments_invalid: tuple[bool, ...] = ()
+    """True for each segment that was not seen and is not rejected."""
     findings: tuple[Finding, ...] = ()
 
 
@@ -113,19 +115,22 @@ class _Overlay:
         self._set_font(17, bold=True)
         for index in range(SEGMENTS):
             nok = index < len(drawn.segments_nok) and drawn.segments_nok[index]
-            start_deg = index * SEGMENT_DEG
+            unseen = index < len(drawn.segments_invalid) and drawn.segments_invalid[index]
+            start_deg, color = index * SEGMENT_DEG, RED if nok else YELLOW if unseen else LIGHT
             self.painter.setPen(faint)
             self.painter.drawLine(self._at(inner, start_deg), self._at(outer, start_deg))
-            if nok:
-                self.painter.setPen(QPen(QColor(RED), 3))
+            if nok or unseen:
+                self.painter.setPen(
+                    QPen(QColor(color), 3, Qt.PenStyle.SolidLine if nok else Qt.PenStyle.DotLine)
+                )
                 for radius in (inner, outer):
                     self._arc(radius, start_deg, start_deg + SEGMENT_DEG)
             at = self._at(inner - 20, start_deg + SEGMENT_DEG / 2)
-            self.painter.setPen(QColor(RED if nok else LIGHT))
+            self.painter.setPen(QColor(color))
             self.painter.drawText(
                 QRectF(at.x() - 26, at.y() - 13, 52, 26),
                 Qt.AlignmentFlag.AlignCenter,
-                f"✗{index + 1}" if nok else str(index + 1),
+                f"{'✗' if nok else '?' if unseen else ''}{index + 1}",
             )
         self._set_font(14, bold=True)
         for finding in drawn.findings:
