@@ -93,6 +93,7 @@ def _writing(folder: Path) -> list[tuple[str, Callable[[], object]]]:
         quality=None,
         scores=scores,
         rejected=(None,) * SEGMENTS,
+        unseen=(None,) * SEGMENTS,
         look=(0.123,) * 192,
     )
     provenance = Provenance(

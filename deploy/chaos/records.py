@@ -96,6 +96,7 @@ def _write(folder: Path, pipe: int) -> None:
         quality=None,
         scores=(clean,) * SEGMENTS,
         rejected=(None,) * SEGMENTS,
+        unseen=(None,) * SEGMENTS,
     )
     provenance = Provenance(
         software="chaos",

@@ -55,7 +55,8 @@ def test_a_model_without_its_metadata_is_refused(key: str, tmp_path: Path) -> No
         ("weldgate.thresholds", "{}", "between 0 and 1, one for each"),
         ("weldgate.classes", '["ok", "hole", "dent"]', "unknown kind of defect 'dent'"),
         ("weldgate.thresholds", '{"hole": 2, "missing_weld": 0.5}', "between 0 and 1"),
-        ("weldgate.novelty_limit", "-1", "above 0"),
+        *(("weldgate.novelty_limit", limit, "above 0") for limit in ("-1", "0", "NaN", "Infinity")),
+        ("weldgate.novelty_limit", "null", "cannot be read"),
     ],
 )
 def test_foreign_metadata_is_refused(key: str, value: str, message: str, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -18,6 +19,7 @@ from station.inspection.verdict import Novel, Novelty, decide
 from station.plc.port import Trigger
 from station.settings.model import ModelSettings, WeldSettings
 from station.settings.quality import QualitySettings
+from station.vision.locate import MIN_PRESENCE, Expected, locate
 from station.vision.polar import SECTORS
 from station.vision.seen import CHECKS, causes, measure_segments, words
 from tests.parts import label_with, ok_inspection, record, segment_quality
@@ -99,6 +101,23 @@ def test_every_value_that_is_not_a_number_fails() -> None:
     for check in CHECKS:
         broken = replace(segment_quality(), **{check.measured: float("nan")})
         assert not check.holds(broken, LIMITS), check.measured
+
+
+def test_the_values_are_those_of_their_definitions() -> None:
+    for crop, quality in zip(crops(dark), measure_segments(crops(dark), WELDED), strict=True):
+        values, curved = crop.astype(np.float64), cv2.Laplacian(crop, cv2.CV_64F)
+        assert quality.mean_dn == pytest.approx(values.mean())
+        assert quality.dark_fraction == pytest.approx((values <= 2).mean())
+        assert quality.saturated_fraction == pytest.approx((values >= 254).mean())
+        assert quality.contrast == pytest.approx(values.std() / values.mean())
+        assert quality.sharpness == pytest.approx(np.sqrt((curved**2).mean()) / values.mean())
+
+
+def test_weld_is_seen_all_round_a_good_part(frames: dict[str, Image], ring_network: RingNetwork) -> None:
+    found = locate(frames[label_with("OK")["frame"]], Expected(), ring_network)
+    assert found.presence.shape == (SECTORS,)
+    assert ((found.presence >= 0) & (found.presence <= 1)).all()
+    assert float(np.mean(found.presence >= MIN_PRESENCE)) == found.ring.support == 1.0
 
 
 def test_the_weld_of_a_segment_is_the_fraction_of_its_sectors_that_show_it() -> None:

@@ -202,7 +202,8 @@ class ReplayPage(Page):
             line = "–" if source.row is None else source.row.verdict
             mark = "≠ " if flipped is not None else ""
             score = "–" if replayed.worst is None else f"{replayed.worst:.3f}"
-            reason = "" if replayed.reason is None else data(replayed.reason)
+            texts = ("" if replayed.reason is None else data(replayed.reason), replayed.detail or "")
+            reason = ": ".join(text for text in texts if text)
             rows.append((source.name, line, f"{mark}{replayed.verdict}", score, reason))
             names.append(source.name)
         self.table.fill(rows, names)
