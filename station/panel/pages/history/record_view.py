@@ -36,7 +36,7 @@ class RecordView(QWidget):
         """True if the strip of the record is shown."""
         self.marks: Marks = {}
         """Segments in which the user says that a defect was missed, with its kind."""
-        self.weld, self.strip = WeldView(), StripView(96)
+        self.weld, self.strip = WeldView(), StripView(86)
         self.weld.setMinimumSize(260, 250)
         self.strip.touched.connect(self.mark)
         self.findings = Table(
