@@ -55,33 +55,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     found: dict[str, Counter[str]] = {name: Counter() for name in COVERS}
     for number, (label, image) in enumerate(track(parts, disable=not sys.stderr.isatty())):
-        plain = inspector.inspect(image)
-        rng = np.random.default_rng([own.seed, number])
-        for name, verdict in _covered(inspector, label, image, plain=plain, rng=rng):
-            found[name][verdict] += 1
+        for name, verdict in judged_under_covers(inspector, label, image, seed=own.seed + number):
+            found[name][f"{label.verdict} {verdict}"] += 1
     _print(found)
     return 1 if any(counts["NOK OK"] for counts in found.values()) else 0
 
 
-def _covered(
-    inspector: Inspector,
-    label: LabelledFrame,
-    image: Image,
-    *,
-    plain: Inspection,
-    rng: np.random.Generator,
-) -> Iterator[tuple[str, str]]:
-    """Yield each cover and what became of the part, for a part that is judged rightly without one."""
+def judged_under_covers(
+    inspector: Inspector, label: LabelledFrame, image: Image, *, seed: int
+) -> Iterator[tuple[str, Verdict]]:
+    """Yield each cover and the verdict on the part under it, for a part that is judged rightly without one.
+
+    On a bad part the covers lie over its defects, on a good part beside the weld.
+    """
+    plain = inspector.inspect(image)
     if plain.ring is None or str(plain.verdict) != label.verdict:
         return
-    areas = list(_defects(plain.ring, plain)) if label.verdict == "NOK" else list(_beside(plain.ring, rng))
-    if not areas:
-        return
-    weight = np.maximum.reduce([area.weight(image.shape) for area in areas])
+    rng = np.random.default_rng(seed)
+    areas = list(_defects(plain.ring, plain) if label.verdict == "NOK" else _beside(plain.ring, rng))
+    height, width = image.shape
+    weight = np.maximum.reduce([area.weight((height, width)) for area in areas])
     for name, cover in COVERS.items():
         if label.verdict == "OK" and name == "half light":
             continue  # it cannot be kept away from the weld
-        yield name, f"{label.verdict} {inspector.inspect(cover(rng, image, weight)).verdict}"
+        yield name, inspector.inspect(cover(rng, image, weight)).verdict
 
 
 def _defects(ring: Ring, plain: Inspection) -> Iterator[Area]:

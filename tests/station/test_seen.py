@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from station.classify.onnx import RingNetwork
 from station.defects import KINDS, Reason
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, Image, Inspection, Ring, Unseen, Verdict
 from station.engine.plc_result import plc_result
