@@ -122,6 +122,8 @@ class SegmentQuality:
     """Standard deviation of the grey level, divided by its mean."""
     sharpness: float
     """Root mean square of the Laplacian, divided by the mean grey level."""
+    fine_structure: float
+    """Fine structure in its weakest direction, relative to the median segment of the part; about 1."""
     weld: float
     """Fraction of the segment in which weld or joint lies on the ring, 0 to 1."""
     visible: float | None = None

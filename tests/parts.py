@@ -65,6 +65,7 @@ def segment_quality() -> SegmentQuality:
         saturated_fraction=0.0,
         contrast=0.3,
         sharpness=0.1,
+        fine_structure=1.0,
         weld=1.0,
     )
 

@@ -8,6 +8,7 @@ WORST = {
     "saturated_fraction": max,
     "contrast": min,
     "sharpness": min,
+    "fine_structure": min,
     "weld": min,
     "visible": min,
 }

@@ -36,6 +36,7 @@ class SegmentQualityEntry(TypedDict):
     saturated_fraction: float
     contrast: float
     sharpness: float
+    fine_structure: float
     weld: float
     visible: float | None
 
@@ -119,6 +120,7 @@ def _quality_entry(quality: SegmentQuality) -> SegmentQualityEntry:
         "saturated_fraction": quality.saturated_fraction,
         "contrast": quality.contrast,
         "sharpness": quality.sharpness,
+        "fine_structure": quality.fine_structure,
         "weld": quality.weld,
         "visible": quality.visible,
     }

@@ -27,6 +27,9 @@ class QualitySettings(Section):
     """Minimum standard deviation of the grey level, divided by its mean."""
     min_segment_sharpness: float = Field(default=0.02, ge=0)
     """Minimum root mean square of the Laplacian, divided by the mean grey level."""
+    min_segment_fine_structure: float = Field(default=0.35, ge=0)
+    """Minimum fine structure in its weakest direction, relative to the median segment of the part: what is
+    out of focus or smeared has less."""
     min_segment_weld: Fraction = 0.0
     """Minimum fraction of a segment in which weld or joint lies on the ring."""
     min_segment_visible: Fraction = 0.5

@@ -19,6 +19,15 @@ from station.vision.quality import DARK_DN, SATURATED_DN
 
 MIDDLE = slice(32, 96)
 """Rows of a crop that are measured: the weld, as what lies beside it may be dark, bright or plain."""
+DETAIL_ROWS = slice(24, 104)
+"""Rows in which the fine structure is measured."""
+DIRECTIONS = (
+    (np.s_[:, :, 3:], np.s_[:, :, :-3]),
+    (np.s_[:, 3:, :], np.s_[:, :-3, :]),
+    (np.s_[:, 2:, 2:], np.s_[:, :-2, :-2]),
+    (np.s_[:, 2:, :-2], np.s_[:, :-2, 2:]),
+)
+"""Pairs of pixels about 3 px apart in crops (21, rows, columns): along, across, and both diagonals."""
 LEVELS = np.arange(256, dtype=np.int64)
 """All grey levels."""
 
@@ -82,6 +91,12 @@ CHECKS = (
         f"{{percent:.0f}} % of it at grey level {SATURATED_DN} or above, limit {{limit}}",
     ),
     Check(Unseen.BLURRED, "sharpness", "min", "sharpness {value:.3f}, limit {limit}"),
+    Check(
+        Unseen.BLURRED,
+        "fine_structure",
+        "min",
+        "fine structure {value:.2f} of that of the other segments, limit {limit}",
+    ),
     Check(Unseen.NO_WELD, "weld", "min", "weld in {percent:.0f} % of it, limit {limit}"),
     Check(Unseen.COVERED, "visible", "min", "{percent:.0f} % of it visible, limit {limit}"),
 )
@@ -98,10 +113,30 @@ def measure_segments(
     it.
     """
     welds = (presence.reshape(SEGMENTS, -1) >= MIN_PRESENCE).mean(axis=1)
+    structures = fine_structure(crops)
     return tuple(
-        _measured(crop, float(weld), None if visible is None else visible[i])
-        for i, (crop, weld) in enumerate(zip(crops, welds, strict=True))
+        _measured(crop, structure, weld=weld, visible=None if visible is None else visible[i])
+        for i, (crop, structure, weld) in enumerate(
+            zip(crops, structures.tolist(), welds.tolist(), strict=True)
+        )
     )
+
+
+def fine_structure(crops: Image) -> NDArray[np.float64]:
+    """Return the fine structure (21,) of each crop in its weakest direction, relative to the median crop.
+
+    Differences of grey levels about 3 px apart, along the weld, across it and along both diagonals, root mean
+    square, by the mean grey level. A weld looks much the same all round its ring; a movement takes the
+    structure of one direction, a wrong focus that of all.
+    """
+    smooth = np.stack([cv2.GaussianBlur(crop[DETAIL_ROWS], (0, 0), 1.0) for crop in crops]).astype(np.int32)
+    levels = np.maximum(smooth.mean(axis=(1, 2)), 1.0)
+    relative = []
+    for first, second in DIRECTIONS:
+        steps = smooth[first] - smooth[second]
+        strength = np.sqrt((steps * steps).mean(axis=(1, 2))) / levels
+        relative.append(strength / max(float(np.median(strength)), 1e-9))
+    return np.asarray(np.min(relative, axis=0), np.float64)
 
 
 def visible_fractions(hidden: NDArray[np.float64]) -> tuple[float, ...]:
@@ -114,7 +149,7 @@ def visible_fractions(hidden: NDArray[np.float64]) -> tuple[float, ...]:
     return tuple(float(value) for value in 1.0 - widest.max(axis=1))
 
 
-def _measured(crop: Image, weld: float, visible: float | None) -> SegmentQuality:
+def _measured(crop: Image, structure: float, *, weld: float, visible: float | None) -> SegmentQuality:
     # whole numbers: one pass over the pixels, and the same to the bit on every PC
     rows = np.ascontiguousarray(crop[MIDDLE])
     size, counts = rows.size, np.bincount(rows.ravel(), minlength=LEVELS.size)
@@ -128,6 +163,7 @@ def _measured(crop: Image, weld: float, visible: float | None) -> SegmentQuality
         saturated_fraction=int(counts[SATURATED_DN:].sum()) / size,
         contrast=sqrt(size * squares - total**2) / size / divisor,
         sharpness=sqrt(cv2.norm(laplacian, cv2.NORM_L2SQR) / size) / divisor,
+        fine_structure=structure,
         weld=weld,
         visible=visible,
     )

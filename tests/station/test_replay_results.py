@@ -56,6 +56,7 @@ QUALITY = st.builds(
     saturated_fraction=NUMBER,
     contrast=NUMBER,
     sharpness=NUMBER,
+    fine_structure=NUMBER,
     weld=NUMBER,
     visible=MAYBE,
 )
@@ -106,6 +107,7 @@ JUDGED_ENTRY = {
             "saturated_fraction": 0.0,
             "contrast": 0.3,
             "sharpness": 0.1,
+            "fine_structure": 1.0,
             "weld": 1.0,
             "visible": 0.0,
         }

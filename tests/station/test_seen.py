@@ -22,7 +22,7 @@ from station.settings.model import ModelSettings, WeldSettings
 from station.settings.quality import QualitySettings
 from station.vision.locate import MIN_PRESENCE, Expected, locate
 from station.vision.polar import SECTORS
-from station.vision.seen import CHECKS, causes, measure_segments, words
+from station.vision.seen import CHECKS, causes, fine_structure, measure_segments, words
 from tests.parts import label_with, ok_inspection, record, segment_quality
 
 LIMITS = QualitySettings(min_segment_weld=0.25)
@@ -36,6 +36,7 @@ QUALITY = st.builds(
     saturated_fraction=FRACTION,
     contrast=st.floats(0, 2),
     sharpness=st.floats(0, 2),
+    fine_structure=st.floats(0, 2),
     weld=FRACTION,
     visible=st.none() | FRACTION,
 )
@@ -230,3 +231,34 @@ def test_a_part_unlike_the_training_images_is_not_judged_unless_the_settings_say
         assert not any(judged.invalid), "its segments were seen and judged"
     bad = inspector.inspect(frames[label_with("hole")["frame"]])
     assert bad.verdict is Verdict.NOK
+
+
+def _woven(rng: np.random.Generator) -> Image:
+    """Return 21 crops (21, 128, 128) uint8 of one texture."""
+    grain = rng.normal(0, 1, (SEGMENTS, SEGMENT_PX, SEGMENT_PX)).astype(np.float32)
+    smooth = np.stack([cv2.GaussianBlur(crop, (0, 0), 1.5) for crop in grain])
+    return np.asarray(np.clip(110 + 60 * smooth, 0, 255), np.uint8)
+
+
+@pytest.mark.parametrize("angle_deg", [0, 30, 45, 90, 135, 160])
+def test_a_smeared_segment_lacks_the_structure_of_one_direction(
+    angle_deg: int, rng: np.random.Generator
+) -> None:
+    made = _woven(rng)
+    kernel = np.zeros((41, 41), np.float32)
+    kernel[20] = 1
+    turn = cv2.getRotationMatrix2D((20, 20), angle_deg, 1.0)
+    line = cv2.warpAffine(kernel, turn, (41, 41))
+    made[6] = cv2.filter2D(made[6], -1, line / line.sum())
+    found = fine_structure(made)
+    assert found[6] < LIMITS.min_segment_fine_structure
+    assert np.delete(found, 6).min() > 0.8
+
+
+@given(gain=st.floats(0.4, 1.6))
+def test_the_fine_structure_does_not_depend_on_the_light(gain: float) -> None:
+    made = _woven(np.random.default_rng(3))
+    lit = np.asarray(np.clip(made[4] * gain, 0, 255), np.uint8)
+    changed = made.copy()
+    changed[4] = lit
+    assert fine_structure(changed)[4] == pytest.approx(fine_structure(made)[4], rel=0.12)

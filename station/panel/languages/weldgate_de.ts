@@ -972,10 +972,6 @@
         <translation>geduldet</translation>
     </message>
     <message>
-        <source>worst segment: brightness {mean:.0f} · contrast {contrast:.2f} · sharpness {sharpness:.3f} · saturated {saturated:.1%} · weld {weld:.0%} · visible {visible}</source>
-        <translation>schlechtestes Segment: Helligkeit {mean:.0f} · Kontrast {contrast:.2f} · Schärfe {sharpness:.3f} · übersteuert {saturated:.1%} · Naht {weld:.0%} · sichtbar {visible}</translation>
-    </message>
-    <message>
         <source>yes</source>
         <translation>ja</translation>
     </message>
@@ -1030,6 +1026,10 @@
     <message>
         <source>unknown</source>
         <translation>unbekannt</translation>
+    </message>
+    <message>
+        <source>worst segment: brightness {mean:.0f} · contrast {contrast:.2f} · sharpness {sharpness:.3f} · fine structure {structure:.2f} · saturated {saturated:.1%} · weld {weld:.0%} · visible {visible}</source>
+        <translation>schlechtestes Segment: Helligkeit {mean:.0f} · Kontrast {contrast:.2f} · Schärfe {sharpness:.3f} · Feinstruktur {structure:.2f} · übersteuert {saturated:.1%} · Naht {weld:.0%} · sichtbar {visible}</translation>
     </message>
 </context>
 <context>

@@ -203,11 +203,12 @@ def _worst(inspection: Inspection) -> str:
     return translate(
         "history",
         "worst segment: brightness {mean:.0f} · contrast {contrast:.2f} · sharpness {sharpness:.3f} · "
-        "saturated {saturated:.1%} · weld {weld:.0%} · visible {visible}",
+        "fine structure {structure:.2f} · saturated {saturated:.1%} · weld {weld:.0%} · visible {visible}",
     ).format(
         mean=worst.mean_dn,
         contrast=worst.contrast,
         sharpness=worst.sharpness,
+        structure=worst.fine_structure,
         saturated=worst.saturated_fraction,
         weld=worst.weld,
         visible=visible,
