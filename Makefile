@@ -2,10 +2,11 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+LOTS_FOLDER := build/lots
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
 .PHONY: help setup demo test lint bench chaos-plc chaos-covers chaos-records chaos-panel soak-panel
-.PHONY: screenshots translations docs registers clean
+.PHONY: networks screenshots translations docs registers clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -45,6 +46,16 @@ chaos-panel: $(VENV)/.demo ## kill, restart and suspend the window while 600 par
 
 soak-panel: $(VENV)/.demo ## send eight hours of events to the window in fast motion
 	$(BIN)/python -m deploy.chaos.soak_panel
+
+networks: $(VENV)/.dev ## draw the pictures of the ring and the seen network again and train both; can be continued
+	$(BIN)/weldgate-synth pictures --use ring --seed 14 --count 700 --out $(LOTS_FOLDER)/ring-14
+	$(BIN)/weldgate-synth pictures --use ring --seed 15 --count 1300 --out $(LOTS_FOLDER)/ring-15
+	$(BIN)/weldgate-synth pictures --use crops --seed 23 --count 450 --out $(LOTS_FOLDER)/crops-23
+	$(BIN)/weldgate-synth pictures --use crops --seed 24 --count 450 --out $(LOTS_FOLDER)/crops-24
+	$(BIN)/weldgate-models train-ring $(LOTS_FOLDER)/ring-14 $(LOTS_FOLDER)/ring-15 --steps 9000 \
+		--version 0.3.0 --out build/networks
+	$(BIN)/weldgate-models train-seen $(LOTS_FOLDER)/crops-23 $(LOTS_FOLDER)/crops-24 --steps 4500 --seed 1 \
+		--version 0.3.0 --out build/networks
 
 screenshots: $(VENV)/.dev ## take screenshots of all pages of the window, in all languages and themes
 	xvfb-run -a -s "-screen 0 1920x1200x24" $(BIN)/python -m deploy.docs.screenshots
