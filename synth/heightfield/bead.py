@@ -46,9 +46,17 @@ class BeadCells:
 
 
 def lay_bead(
-    rng: np.random.Generator, surface: Surface, course: Course, families: Sequence[str]
+    rng: np.random.Generator,
+    surface: Surface,
+    course: Course,
+    families: Sequence[str],
+    *,
+    steepness: float = 1.0,
 ) -> tuple[str, BeadCells]:
-    """Weld a bead onto the part; return the name of its family, drawn from `families`, and its cells."""
+    """Weld a bead onto the part; return the name of its family, drawn from `families`, and its cells.
+
+    `steepness` is the factor of its height.
+    """
     family = str(rng.choice(list(families)))
     dx, dy = surface.x_mm - np.float32(course.x_mm), surface.y_mm - np.float32(course.y_mm)
     away = np.hypot(dx, dy) - np.float32(course.radius_mm)
@@ -76,6 +84,7 @@ def lay_bead(
     )
     own = _cross_section(rng, s_mm, across, course) + relief
     own += second * _raised(rng, across) + _crater(rng, s_mm, across, course)
+    own *= np.float32(steepness)
     base = _base(surface, course, near, away[near])
     surface.height_mm[near] += inside * (base + own - surface.height_mm[near])
     surface.height_mm[near] -= left * _undercut(rng, s_mm, across)

@@ -1,13 +1,14 @@
 """One part as a picture with its label, grown from a seed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.heightfield.bead import BeadCells, Course, lay_bead
 from synth.heightfield.grid import Grid
+from synth.heightfield.harsh import add_harsh_dirt, harsh_picture, steepened
 from synth.heightfield.holes import FAMILIES as HOLES
 from synth.heightfield.holes import DrilledHole, drill
 from synth.heightfield.marks import add_circles, add_dirt, add_edge, add_spot, add_tack
@@ -39,13 +40,17 @@ class Order:
     """Fraction of the welds with missing bead."""
     holes: float = 0.3
     """Fraction of the welds with holes."""
+    harsh: float = 0.0
+    """Fraction of the pictures in which the weld is hard to find: see `synth.heightfield.harsh`."""
+    bare: float = 0.0
+    """Fraction of the welds of which there is nothing but the joint."""
     sheets: Sequence[str] = tuple(FINISHES)
     welds: Sequence[str] = tuple(WELDS)
     hole_families: Sequence[str] = tuple(HOLES)
 
 
 ORDERS = {
-    "ring": Order(um_per_px=52.0, factor=2),
+    "ring": Order(um_per_px=52.0, factor=2, harsh=0.5, bare=0.05),
     "crops": Order(
         um_per_px=13.0,
         side_mm=14.6,
@@ -86,6 +91,8 @@ def picture(seed: int, order: Order) -> Pictured:
         step_mm=uniform(rng, (-0.25, 0.25)) * (rng.random() < 0.5),
     )
     has_weld = rng.random() >= order.no_weld
+    extra = stream(seed, Stream.HEIGHTFIELD, "harsh")
+    is_harsh, is_bare = extra.random() < order.harsh, extra.random() < order.bare
     surface, sheet = make_sheets(rng, grid, joint, order.sheets, is_joined=has_weld)
     add_circles(rng, surface, joint, keep_off_mm=1.25 * half)
     course, weld = None, None
@@ -101,7 +108,10 @@ def picture(seed: int, order: Order) -> Pictured:
             overlap_mm=log_uniform(rng, (0.3, 6)),
             missing_deg=_missing(rng, radius) if rng.random() < order.missing else (),
         )
-        weld, cells = lay_bead(rng, surface, course, order.welds)
+        if is_bare:
+            course = replace(course, missing_deg=((0.0, 360.0),))
+        steepness = steepened(extra, course) if is_harsh else 1.0
+        weld, cells = lay_bead(rng, surface, course, order.welds, steepness=steepness)
         holes = _drill(rng, surface, course, cells, order)
     else:
         _add_spots(rng, surface, joint)
@@ -110,6 +120,8 @@ def picture(seed: int, order: Order) -> Pictured:
     add_dirt(rng, surface, joint, half)
     if rng.random() < 0.25:
         add_edge(rng, surface, joint, reach_mm=half + 0.3)
+    if is_harsh:
+        add_harsh_dirt(extra, surface, joint, half)
     light = draw_light(rng)
     depth = uniform(rng, (0.3, 1.5))
     radiance = shade(
@@ -117,6 +129,8 @@ def picture(seed: int, order: Order) -> Pictured:
     )
     radiance *= np.clip(surface.reflectance, 0.0, 1.2) * shadow(surface.height_mm, grid.cell_mm, depth)
     image = photograph(rng, radiance, surface.x_mm, surface.y_mm, factor=order.factor)
+    if is_harsh:
+        image = harsh_picture(extra, image)
     place = most_frequent(surface.place, order.factor)
     return Pictured(image=image, place=place, course=course, weld=weld, sheet=sheet, holes=holes)
 

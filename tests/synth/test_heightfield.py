@@ -156,3 +156,17 @@ def test_a_lot_continues_where_it_stopped_and_says_where_the_weld_is(tmp_path: P
         assert np.median(away) < label["bead_halfwidth_mm"] * 1000 / 52.0
     with pytest.raises(SynthError, match="another seed"):
         write_pictures(tmp_path, order, seed=3, count=3, workers=1, done=lambda: None)
+
+
+def test_what_is_harsh_changes_only_the_pictures_that_are() -> None:
+    mild, harsh = replace(SMALL, harsh=0.0, bare=0.0), replace(SMALL, harsh=1.0, bare=0.0)
+
+    assert not np.array_equal(picture(8, mild).image, picture(8, harsh).image)
+    assert np.array_equal(picture(8, mild).image, picture(8, replace(mild, harsh=1e-9)).image)
+
+
+def test_a_bare_part_shows_its_joint_all_round() -> None:
+    drawn = picture(12, replace(SMALL, no_weld=0.0, holes=0.0, bare=1.0, harsh=0.0))
+
+    assert not np.any(drawn.place == Place.BEAD)
+    assert np.any(drawn.place == Place.BARE_JOINT)
