@@ -6,7 +6,7 @@ LOTS_FOLDER := build/lots
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
 .PHONY: help setup demo test lint bench chaos-plc chaos-covers chaos-records chaos-panel soak-panel
-.PHONY: networks screenshots translations docs registers clean
+.PHONY: seen-network screenshots translations docs registers clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -47,13 +47,9 @@ chaos-panel: $(VENV)/.demo ## kill, restart and suspend the window while 600 par
 soak-panel: $(VENV)/.demo ## send eight hours of events to the window in fast motion
 	$(BIN)/python -m deploy.chaos.soak_panel
 
-networks: $(VENV)/.dev ## draw the pictures of the ring and the seen network again and train both; can be continued
-	$(BIN)/weldgate-synth pictures --use ring --seed 14 --count 700 --out $(LOTS_FOLDER)/ring-14
-	$(BIN)/weldgate-synth pictures --use ring --seed 15 --count 1300 --out $(LOTS_FOLDER)/ring-15
+seen-network: $(VENV)/.dev ## draw the pictures of the shipped seen network again and train it; can be continued
 	$(BIN)/weldgate-synth pictures --use crops --seed 23 --count 450 --out $(LOTS_FOLDER)/crops-23
 	$(BIN)/weldgate-synth pictures --use crops --seed 24 --count 450 --out $(LOTS_FOLDER)/crops-24
-	$(BIN)/weldgate-models train-ring $(LOTS_FOLDER)/ring-14 $(LOTS_FOLDER)/ring-15 --steps 9000 \
-		--version 0.3.0 --out build/networks
 	$(BIN)/weldgate-models train-seen $(LOTS_FOLDER)/crops-23 $(LOTS_FOLDER)/crops-24 --steps 4500 --seed 1 \
 		--version 0.3.0 --out build/networks
 

@@ -103,10 +103,17 @@ def film(rng: np.random.Generator, crop: Picture, spare: Picture) -> tuple[Pictu
 
 
 def drop(rng: np.random.Generator, crop: Picture, spare: Picture) -> tuple[Picture, float]:
-    """Return the crop through a drop of liquid: bent, softened, with a highlight."""
+    """Return the crop through liquid: bent by a film or by drops that are lenses, with highlights."""
     y, x = np.indices(crop.shape, np.float32)
     bend = rng.uniform(6, 25)
     dx, dy = (_noise(rng, crop.shape, float(rng.uniform(8, 30))) * np.float32(bend) for _ in range(2))
+    if rng.random() < 0.6:
+        dx, dy = np.zeros_like(x), np.zeros_like(y)
+        for _ in range(int(rng.integers(3, 30))):
+            middle_x, middle_y = rng.uniform(-20, 148, 2)
+            inside = np.hypot(x - middle_x, y - middle_y) < rng.uniform(15, 90)
+            power = np.float32(rng.uniform(-4, 1.5))
+            dx[inside], dy[inside] = (power * (at - m)[inside] for at, m in ((x, middle_x), (y, middle_y)))
     seen = cv2.remap(crop, x + dx, y + dy, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT)
     seen = cv2.GaussianBlur(seen, (0, 0), float(rng.uniform(1, 5)))
     light = np.clip(_noise(rng, crop.shape, 18.0) - 1.2, 0, None) * np.float32(rng.uniform(0, 300))
@@ -152,7 +159,7 @@ COVERS: dict[str, Cover] = {
 """Covers by name."""
 
 
-WEIGHTS = {"sheet": 2.0, "blur": 1.5, "motion": 3.0, "drop": 3.0, "film": 1.5, "blocks": 1.5, "turned": 1.5}
+WEIGHTS = {"sheet": 2.0, "blur": 1.5, "motion": 3.0, "drop": 4.0, "film": 1.5, "blocks": 1.5, "turned": 1.5}
 """How often a cover is drawn, if not once: those that are hard to tell from a weld more often."""
 
 

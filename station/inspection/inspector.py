@@ -20,7 +20,7 @@ from station.settings.view import view_problem
 from station.vision.locate import Expected, Located, locate
 from station.vision.quality import gate, measure
 from station.vision.rescale import from_network_scale, to_network_scale
-from station.vision.seen import causes, measure_segments, visible_fractions
+from station.vision.seen import causes, hidden_columns, measure_segments, visible_fractions
 from station.vision.unwrap import in_view, segments, unwrap
 
 APPEARANCE_DECIMALS = 3
@@ -103,7 +103,7 @@ class Inspector:
         unwrap_ms, start = _ms(start), perf_counter()
         timing = Timing(grab_ms, locate_ms, unwrap_ms)
         try:
-            hidden = self._seen_network(crops)
+            hidden = hidden_columns(strip, self._seen_network)
         except ModelError as error:
             return Inspection.error(Reason.MODEL_FAILED, ring, quality, timing, detail=str(error))
         seen = measure_segments(crops, located.presence, visible_fractions(hidden))

@@ -35,7 +35,7 @@ def decide(
     novelty: Novelty,
 ) -> tuple[Verdict, Reason | None, str | None]:
     """Return verdict, reason and detail of a part with 21 decisions and the quality of its 21 segments."""
-    not_seen = words(qualities, limits)
+    not_seen = words(qualities, limits, rejected)
     reasons = sorted({kind for kind in rejected if kind is not None}, key=lambda kind: kind.code)
     if reasons:
         rejecting = (finding for finding in findings if finding.kind in reasons)

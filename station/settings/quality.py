@@ -32,5 +32,5 @@ class QualitySettings(Section):
     out of focus or smeared has less."""
     min_segment_weld: Fraction = 0.0
     """Minimum fraction of a segment in which weld or joint lies on the ring."""
-    min_segment_visible: Fraction = 0.5
+    min_segment_visible: Fraction = 0.4
     """Minimum fraction of a segment that nothing covers; used only with a network that tells it."""

@@ -3,7 +3,7 @@
 A network that judges a crop of nothing still gives scores. So each segment is looked at before they count.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import sqrt
 from typing import Literal
@@ -12,10 +12,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from station.domain import SEGMENTS, Image, SegmentQuality, Unseen
+from station.domain import SEGMENT_PX, SEGMENTS, Image, SegmentQuality, Unseen
 from station.settings.quality import QualitySettings
 from station.vision.locate import MIN_PRESENCE
 from station.vision.quality import DARK_DN, SATURATED_DN
+from station.vision.unwrap import segments
 
 MIDDLE = slice(32, 96)
 """Rows of a crop that are measured: the weld, as what lies beside it may be dark, bright or plain."""
@@ -139,6 +140,18 @@ def fine_structure(crops: Image) -> NDArray[np.float64]:
     return np.asarray(np.min(relative, axis=0), np.float64)
 
 
+def hidden_columns(strip: Image, find_hidden: Callable[[Image], NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Return how much of the weld is hidden (21, 16), by segment and column, on a strip (128, 2688) uint8.
+
+    `find_hidden` answers for the 16 columns (K, 16) of crops (K, 128, 128). Each column is looked at in the
+    middle half of a crop: at the ends of a crop half of the surroundings are missing.
+    """
+    half = SEGMENT_PX // 4
+    first, second = (find_hidden(segments(np.roll(strip, shift, axis=1))) for shift in (half, -half))
+    middle = slice(first.shape[1] // 4, first.shape[1] * 3 // 4)
+    return np.concatenate([first[:, middle], second[:, middle]], axis=1)
+
+
 def visible_fractions(hidden: NDArray[np.float64]) -> tuple[float, ...]:
     """Return how much of each segment's weld is visible, where it is hidden most.
 
@@ -179,12 +192,17 @@ def _first_failed(quality: SegmentQuality, limits: QualitySettings) -> Check | N
     return next((check for check in CHECKS if not check.holds(quality, limits)), None)
 
 
-def words(qualities: Sequence[SegmentQuality], limits: QualitySettings) -> str | None:
-    """Return one line with the segments that were not seen, why, and the worst value; None if all were."""
+def words(
+    qualities: Sequence[SegmentQuality], limits: QualitySettings, rejected: Sequence[object] = ()
+) -> str | None:
+    """Return one line with the segments that were not seen, why, and the worst value; None if all were.
+
+    Segments that are rejected are left out: what is seen to be bad was seen.
+    """
     found: dict[Check, list[int]] = {}
     for index, quality in enumerate(qualities):
         check = _first_failed(quality, limits)
-        if check is not None:
+        if check is not None and not (rejected and rejected[index]):
             found.setdefault(check, []).append(index)
     lines = (
         f"segment{'s' * (len(own) > 1)} {', '.join(str(index + 1) for index in own)}: {check.cause} "

@@ -23,6 +23,7 @@ from station.panel.widgets.weld.strip_view import LABEL_PX, StripView
 from station.panel.window import Window
 from station.records import Part
 from station.settings.model import ArchiveSettings
+from station.settings.quality import QualitySettings
 from tests.panel.made import part, status
 from tests.parts import nok_inspection, ok_inspection, provenance, record, segment_quality, unseen_inspection
 
@@ -130,7 +131,7 @@ def test_statistics_draw_the_worst_segment_with_its_limit(window: Window) -> Non
     (dots,) = [item for item in chart.listDataItems() if item.yData is not None]
     assert list(dots.yData) == [0.3, 0.06]
     (line,) = [item for item in chart.items() if type(item).__name__ == "InfiniteLine"]
-    assert line.value() == 0.05
+    assert line.value() == QualitySettings().min_segment_contrast
     assert not page.segment_trends["visible"].listDataItems(), "no network tells it"
     assert not chart.isVisible()
     page.view.setCurrentIndex(1)
