@@ -136,7 +136,8 @@ Kinds = dict[int, DefectKind | None]
 
 def _as_judged(record: Record) -> Kinds:
     kinds = defect_kinds(record)
-    return {number: kinds[number - 1] for number in _seen(record)}
+    known = enumerate(record.inspection.invalid, start=1)
+    return {number: kinds[number - 1] for number, says_nothing in known if not says_nothing}
 
 
 def _all_ok(record: Record) -> Kinds:

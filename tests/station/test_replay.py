@@ -134,7 +134,7 @@ def test_the_scale_of_the_settings_and_that_of_the_option_give_the_same_right_ve
         assert entry["center"] == pytest.approx([(c + 0.5) * factor - 0.5 for c in item["center"]], abs=4)
         assert entry["radius"] == pytest.approx(item["radius"] * factor, rel=0.02)
         judged = inspector.inspect(at_scale(frames[item["frame"]], um_per_px))
-        assert entry["segments"] == [scores.nok for scores in judged.scores], "the line judges alike"
+        assert entry["segments"] == list(judged.nok_scores), "the line judges alike"
         assert as_entry(done.results[item["frame"]])["segments"] == entry["segments"], "and the window"
         if um_per_px <= 39:
             lengths = [[f["length_mm"] for f in e["findings"]] for e in (entry, ours)]  # type: ignore[attr-defined]
