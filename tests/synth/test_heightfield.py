@@ -100,13 +100,16 @@ def test_the_mask_of_a_pixel_is_that_of_most_of_its_cells(factor: int, seed: int
             assert counts[mask[row, column]] == counts.max()
 
 
-@given(st.integers(1, 4), st.floats(25, 35), st.floats(25, 35))
-@settings(max_examples=30)
-def test_a_mask_is_not_moved_against_the_mean_of_its_cells(factor: int, x_px: float, y_px: float) -> None:
+@pytest.mark.parametrize("factor", [1, 2, 3, 4])
+def test_a_mask_is_not_moved_against_the_mean_of_its_cells(factor: int, rng: np.random.Generator) -> None:
     rows, columns = (np.indices((60 * factor, 60 * factor)) + 0.5) / factor - 0.5
-    mask = most_frequent((np.hypot(columns - x_px, rows - y_px) < 20).astype(np.uint8), factor)
-    found_rows, found_columns = np.nonzero(mask)
-    assert (found_columns.mean(), found_rows.mean()) == pytest.approx((x_px, y_px), abs=0.1)
+    moved = []
+    for x_px, y_px in rng.uniform(25, 35, (60, 2)):
+        mask = most_frequent((np.hypot(columns - x_px, rows - y_px) < 20).astype(np.uint8), factor)
+        found_rows, found_columns = np.nonzero(mask)
+        moved.append((found_columns.mean() - x_px, found_rows.mean() - y_px))
+    # a single mask is of whole pixels; many of them show whether they are moved
+    assert np.mean(moved, axis=0) == pytest.approx((0.0, 0.0), abs=0.03)
 
 
 def test_the_same_seed_gives_the_same_picture_and_another_one_does_not() -> None:
