@@ -9,7 +9,7 @@ import os
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import TypeVar, cast
 
 import numpy as np
 import onnx
@@ -24,6 +24,8 @@ from models.errors import LearningError
 from station.classify.onnx import CLASSES, Classifier
 from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_PX
+
+AnyNetwork = TypeVar("AnyNetwork", bound=nn.Module)
 
 TOLERANCE = 1e-4
 """Largest difference between the answers of a file and of what it was made from."""
@@ -81,7 +83,7 @@ class Shipped(nn.Module):
         )
 
 
-def fused(network: WeldNet) -> WeldNet:
+def fused(network: AnyNetwork) -> AnyNetwork:
     """Return a copy with the batch norms folded into the convolutions, as in the file."""
     answer = copy.deepcopy(network).eval()
     for module in answer.modules():

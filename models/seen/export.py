@@ -1,15 +1,12 @@
 """The trained network to an ONNX file, kept only if the file answers as the network does."""
 
-import copy
 from pathlib import Path
-from typing import cast
 
 import numpy as np
 import torch
 from torch import Tensor, nn
-from torch.nn.utils.fusion import fuse_conv_bn_eval
 
-from models.classifier.export import example_images, keep, largest_gap, write_onnx
+from models.classifier.export import example_images, fused, keep, largest_gap, write_onnx
 from models.seen.network import SeenNet
 from station.classify.onnx import SeenNetwork
 from station.domain import SEGMENT_PX, SEGMENTS
@@ -29,20 +26,10 @@ class _Shipped(nn.Module):
 
 def export_seen(network: SeenNet, path: Path, version: str, data_hash: str) -> None:
     """Write the network. Raises LearningError if the file and the network answer differently."""
-    whole = _Shipped(_fused(network)).eval()
+    whole = _Shipped(fused(network)).eval()
     crops = torch.from_numpy(example_images((SEGMENTS, 1, SEGMENT_PX, SEGMENT_PX)))
     metadata = {"weldgate.data_hash": data_hash, "weldgate.version": version}
     part = write_onnx(whole, crops, path, source="crops", targets=("hidden",), metadata=metadata)
     with torch.no_grad():
         expected = np.asarray(whole(crops).numpy(), np.float64)
     keep(part, path, largest_gap(expected, SeenNetwork(part)(crops.numpy()[:, 0])))
-
-
-def _fused(network: SeenNet) -> SeenNet:
-    """Return a copy with the batch norms folded into the convolutions."""
-    answer = copy.deepcopy(network).eval()
-    for module in answer.modules():
-        if isinstance(module, nn.Sequential) and len(module) > 1 and isinstance(module[1], nn.BatchNorm2d):
-            module[0] = fuse_conv_bn_eval(cast("nn.Conv2d", module[0]), module[1])
-            module[1] = nn.Identity()
-    return answer

@@ -4,7 +4,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.heightfield.bead import Course
 from synth.heightfield.grid import Field, noise, smooth_step
 from synth.heightfield.sheets import Joint
 from synth.heightfield.surface import Surface
@@ -58,9 +57,9 @@ def _bands(rng: np.random.Generator, surface: Surface, away: Field, half_width_m
         surface.reflectance *= np.asarray(1 - amount * np.clip(tinted * strength, 0, 1) * waves, np.float32)
 
 
-def steepened(rng: np.random.Generator, course: Course) -> float:
+def steepened(rng: np.random.Generator) -> float:
     """Return the factor of the bead's relief: real beads can be several times as steep as rendered ones."""
-    return log_uniform(rng, (1.0, 3.0)) if course.half_width_mm > 0 else 1.0
+    return log_uniform(rng, (1.0, 3.0))
 
 
 def harsh_picture(rng: np.random.Generator, image: NDArray[np.uint8]) -> NDArray[np.uint8]:

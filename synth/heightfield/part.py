@@ -110,7 +110,7 @@ def picture(seed: int, order: Order) -> Pictured:
         )
         if is_bare:
             course = replace(course, missing_deg=((0.0, 360.0),))
-        steepness = steepened(extra, course) if is_harsh else 1.0
+        steepness = steepened(extra) if is_harsh else 1.0
         weld, cells = lay_bead(rng, surface, course, order.welds, steepness=steepness)
         holes = _drill(rng, surface, course, cells, order)
     else:
