@@ -6,7 +6,7 @@ LOTS_FOLDER := build/lots
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
 .PHONY: help setup demo test lint bench chaos-plc chaos-covers chaos-records chaos-panel soak-panel
-.PHONY: seen-network screenshots translations docs registers clean
+.PHONY: networks screenshots translations docs registers clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -25,8 +25,9 @@ lint: $(VENV)/.dev ## check style (ruff), types (mypy) and import contracts
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(VENV)/.dev ## measure the times of the station, the PLC link, records, generator and classifier
+bench: $(VENV)/.dev ## measure the times of the station, the finder, the PLC link, records, generator and classifier
 	$(BIN)/python -m deploy.bench.station
+	$(BIN)/python -m deploy.bench.finder
 	$(BIN)/python -m deploy.bench.plc
 	$(BIN)/python -m deploy.bench.records
 	$(BIN)/python -m deploy.bench.render
@@ -47,9 +48,11 @@ chaos-panel: $(VENV)/.demo ## kill, restart and suspend the window while 600 par
 soak-panel: $(VENV)/.demo ## send eight hours of events to the window in fast motion
 	$(BIN)/python -m deploy.chaos.soak_panel
 
-seen-network: $(VENV)/.dev ## draw the pictures of the shipped seen network again and train it; can be continued
+networks: $(VENV)/.dev ## draw the pictures of the ring and the seen network again and train both; can be continued
+	$(BIN)/weldgate-synth pictures --use ring --seed 16 --count 1500 --out $(LOTS_FOLDER)/ring-16
 	$(BIN)/weldgate-synth pictures --use crops --seed 23 --count 450 --out $(LOTS_FOLDER)/crops-23
 	$(BIN)/weldgate-synth pictures --use crops --seed 24 --count 450 --out $(LOTS_FOLDER)/crops-24
+	$(BIN)/weldgate-models train-ring $(LOTS_FOLDER)/ring-16 --steps 5000 --version 0.3.0 --out build/networks
 	$(BIN)/weldgate-models train-seen $(LOTS_FOLDER)/crops-23 $(LOTS_FOLDER)/crops-24 --steps 4500 --seed 1 \
 		--version 0.3.0 --out build/networks
 

@@ -107,22 +107,47 @@ def _fine_tune(arguments: argparse.Namespace) -> int:
 
 def _train_ring(arguments: argparse.Namespace) -> int:
     from models.data.lot import data_hash
+    from models.ring.card import command, ring_card
+    from models.ring.evaluate import as_json, evaluate_ring, lines
     from models.ring.export import export_ring
-    from models.ring.train import RingPlan, ring_card, train_ring
+    from models.ring.pictures import read_pictures, split
+    from models.ring.train import RingPlan, train_ring
+    from station.classify.onnx import RingNetwork
 
-    plan = RingPlan(seed=arguments.seed)
-    network, error_px = train_ring(arguments.lots, plan, _print)
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    out, left_out = arguments.out, arguments.leave_out
+    training, held_out = split(read_pictures(arguments.lots), left_out)
+    given = {"seed": arguments.seed, "steps": arguments.steps}
+    plan = replace(RingPlan(), **{name: value for name, value in given.items() if value is not None})
+    network = train_ring(training, plan, out, _print)
     digest = data_hash(arguments.lots)
-    export_ring(network, arguments.out / "ring.onnx", arguments.version, digest)
-    (arguments.out / "RING.md").write_text(ring_card(arguments.version, digest, plan, error_px))
+    export_ring(network, out / "ring.onnx", arguments.version, digest)
+    outcomes = evaluate_ring(held_out, RingNetwork(out / "ring.onnx"))
+    card = ring_card(
+        version=arguments.version,
+        data_hash=digest,
+        lots=arguments.lots,
+        command=command(arguments.lots, seed=plan.seed, steps=plan.steps, leave_out=left_out),
+        plan=plan,
+        weights=sum(p.numel() for p in network.parameters()),
+        held_out=as_json(outcomes),
+    )
+    (out / "RING.md").write_text(card, encoding="utf-8")
+    for line in lines(outcomes):
+        _print(line)
     return 0
 
 
-def _pair_rings(arguments: argparse.Namespace) -> int:
-    from models.ring.pair import pair_rings
+def _evaluate_ring(arguments: argparse.Namespace) -> int:
+    from models.ring.evaluate import evaluate_ring, lines
+    from models.ring.pictures import read_pictures
+    from station.classify.onnx import RingNetwork
 
-    pair_rings(arguments.first, arguments.second, arguments.out, arguments.version)
+    pictures = read_pictures(arguments.lots)
+    network = RingNetwork(arguments.ring)
+    with _progress("looking for rings", len(pictures)) as advance:
+        outcomes = evaluate_ring(pictures, network, advance)
+    for line in lines(outcomes):
+        _print(line)
     return 0
 
 
@@ -252,7 +277,7 @@ COMMANDS = {
     "train": _train,
     "fine-tune": _fine_tune,
     "train-ring": _train_ring,
-    "pair-rings": _pair_rings,
+    "evaluate-ring": _evaluate_ring,
     "train-seen": _train_seen,
     "evaluate": _evaluate,
     "export": _export,

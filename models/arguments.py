@@ -43,12 +43,7 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
         add("fine-tune", "train on a line's own images: 10 px window, balanced, split by part 70/15/15 %%")
     )
     _train_ring(add("train-ring", "train the ring network and write its file and its card"))
-    _pair_rings(
-        add(
-            "pair-rings",
-            "combine two ring networks: precise where the first is confident, the second elsewhere",
-        )
-    )
+    _evaluate_ring(add("evaluate-ring", "find the rings of labelled pictures with the station's own code"))
     _train_seen(
         add("train-seen", "train the network that says what is hidden, and write its file and its card")
     )
@@ -102,19 +97,36 @@ def _fine_tune(fine: argparse.ArgumentParser) -> None:
 
 
 def _train_ring(ring: argparse.ArgumentParser) -> None:
-    ring.add_argument("lots", type=Path, nargs="+", metavar="LOT", help="folders made by weldgate-synth part")
+    _ring_lots(ring)
     _run_options(ring)
     ring.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")
+    ring.add_argument("--steps", type=int, metavar="N", help="number of batches of 8 (default: 9000)")
+    ring.add_argument(
+        "--leave-out",
+        metavar="NAME",
+        help="hold out this weld family or sheet finish (default: every tenth picture)",
+    )
 
 
-def _pair_rings(pair: argparse.ArgumentParser) -> None:
-    pair.add_argument("first", type=Path, metavar="FILE", help="ring network that is more precise")
-    pair.add_argument("second", type=Path, metavar="FILE", help="ring network that sees more surfaces")
-    _run_options(pair)
+def _evaluate_ring(ring: argparse.ArgumentParser) -> None:
+    _ring_lots(ring)
+    ring.add_argument(
+        "--ring",
+        type=Path,
+        default=SHIPPED / "ring.onnx",
+        metavar="FILE",
+        help="ring network (default: the shipped one)",
+    )
+
+
+def _ring_lots(ring: argparse.ArgumentParser) -> None:
+    ring.add_argument(
+        "lots", type=Path, nargs="+", metavar="LOT", help="folders of pictures at 52 µm/px with masks"
+    )
 
 
 def _train_seen(seen: argparse.ArgumentParser) -> None:
-    help_of_lots = "folders of labelled frames at 13 um/px, made by weldgate-synth pictures or part"
+    help_of_lots = "folders of labelled frames at 13 µm/px, made by weldgate-synth pictures or part"
     seen.add_argument("lots", type=Path, nargs="+", metavar="LOT", help=help_of_lots)
     _run_options(seen)
     seen.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")

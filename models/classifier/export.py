@@ -143,21 +143,25 @@ def write_onnx(
     source: str,
     targets: tuple[str, ...],
     metadata: dict[str, str],
+    axes: tuple[str, ...] = (),
 ) -> Path:
     """Export to `*.part.onnx` next to `path`, to be checked and renamed, and return its path.
 
-    `source` and `targets` name the input and the outputs; their first axis may be of any length.
+    `source` and `targets` name the input and the outputs; their first axis may be of any length, as may the
+    further axes of the input that `axes` names, from the third axis, and those of the outputs.
     """
     part = path.with_suffix(".part.onnx")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # the tracing exporter needs no further package
+        # the size of replicated borders is left to the runtime, which folds it
+        warnings.filterwarnings("ignore", "Constant folding")
         torch.onnx.export(
             module,
             (example,),
             str(part),
             input_names=[source],
             output_names=list(targets),
-            dynamic_axes={name: {0: "count"} for name in (source, *targets)},
+            dynamic_axes={name: {0: "count", **dict(enumerate(axes, 2))} for name in (source, *targets)},
             opset_version=17,
             dynamo=False,
         )

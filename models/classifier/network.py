@@ -20,7 +20,7 @@ def channels_last(network: nn.Module) -> None:
     network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
 
 
-class _Conv(nn.Sequential):
+class Conv(nn.Sequential):
     """Convolution, batch norm, ReLU: the runtime fuses the three."""
 
     def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1) -> None:
@@ -31,13 +31,13 @@ class _Conv(nn.Sequential):
         )
 
 
-class _Mix(nn.Module):
+class Mix(nn.Module):
     """Residual block: a filter per channel over its neighbourhood, then 1 x 1 across the channels."""
 
     def __init__(self, channels: int, size: int) -> None:
         super().__init__()
         self.branch = nn.Sequential(
-            nn.Conv2d(channels, channels, size, padding=size // 2, groups=channels), _Conv(channels, channels)
+            nn.Conv2d(channels, channels, size, padding=size // 2, groups=channels), Conv(channels, channels)
         )
 
     def forward(self, x: Tensor) -> Tensor:
@@ -68,12 +68,12 @@ class WeldNet(nn.Module):
 
     def __init__(self, classes: int = len(CLASSES), channels: int = len(MAPPED)) -> None:
         super().__init__()
-        self.quarter = nn.Sequential(_Conv(1, 32, 8, 4), _Mix(32, 3))
-        self.eighth = nn.Sequential(_Conv(32, 64, 2, 2), _Mix(64, 5), _Mix(64, 5))
-        self.sixteenth = nn.Sequential(_Conv(64, 128, 2, 2), _Mix(128, 3), _Mix(128, 3))
+        self.quarter = nn.Sequential(Conv(1, 32, 8, 4), Mix(32, 3))
+        self.eighth = nn.Sequential(Conv(32, 64, 2, 2), Mix(64, 5), Mix(64, 5))
+        self.sixteenth = nn.Sequential(Conv(64, 128, 2, 2), Mix(128, 3), Mix(128, 3))
         self.up_eighth = _Up(128, 64, 48)
         self.up_quarter = _Up(48, 32, 32)
-        self.fine = _Mix(32, 3)
+        self.fine = Mix(32, 3)
         self.map = nn.Conv2d(32, channels, 1)
         self.feature = nn.Sequential(nn.Linear(2 * 128 + 2 * 32, FEATURES), nn.ReLU())
         self.classes = nn.Sequential(nn.Dropout(0.2), nn.Linear(FEATURES + channels, classes))

@@ -99,12 +99,13 @@ def frames(
 
 
 def data_hash(folders: Sequence[Path]) -> str:
-    """Return the SHA-256 over the labels and the images of lots, images in the order of their names."""
+    """Return the SHA-256 over labels, images and masks, if any, of lots, each in the order of their names."""
     digest = hashlib.sha256()
     for folder in folders:
         digest.update((folder / "labels.json").read_bytes())
-        for path in sorted((folder / "frames").glob("*.png")):
-            digest.update(path.read_bytes())
+        for images in ("frames", "masks"):
+            for path in sorted((folder / images).glob("*.png")):
+                digest.update(path.read_bytes())
     return digest.hexdigest()
 
 

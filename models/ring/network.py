@@ -1,56 +1,85 @@
-"""The ring network: where the weld's centre line is in a flattened band, and whether there is one."""
+"""The ring network: how much of each cell of a picture is bead and how much is bare joint."""
 
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
 
-from station.vision.polar import ROWS
+from models.classifier.network import Conv, Mix
+from station.vision.marks import CELL_PX, CHANNELS, SPLIT
 
-BIN_PX = 4
+POOL_PX = 2 * CELL_PX
+"""Side in px of the areas over which grey levels are averaged first."""
+AREAS = 9
+"""Number of areas along each side of the surroundings to which a place is compared: 3.7 mm."""
+NOISE_DN2 = 2.0
+"""Variance of grey levels that is added, so that an even surface does not become all noise."""
 
 
-class _Wrap(nn.Module):
-    """A convolution that is periodic along the columns."""
+class _Stem(nn.Module):
+    """First filters, of grey levels less their local mean, divided by their local deviation.
 
-    def __init__(
-        self, inputs: int, outputs: int, *, size: int, stride: tuple[int, int], dilation: int = 1
-    ) -> None:
+    The filters see raw grey levels; mean and deviation, which hardly change within a filter, are applied to
+    their results, at a sixteenth of the cost.
+    """
+
+    def __init__(self, outputs: int) -> None:
         super().__init__()
-        self.reach = size // 2
-        rows = (size // 2) * dilation
-        self.conv = nn.Conv2d(
-            inputs, outputs, size, stride, padding=(rows, 0), dilation=(dilation, 1), bias=False
-        )
-        self.norm = nn.BatchNorm2d(outputs)
+        self.filters = nn.Conv2d(1, outputs, 2 * CELL_PX, CELL_PX, bias=False)
+        self.bias = nn.Parameter(torch.zeros(1, outputs, 1, 1))
 
-    def forward(self, x: Tensor) -> Tensor:
-        """Convolve (K, C, H, W) to (K, C', H', W')."""
-        wrapped = torch.cat([x[..., -self.reach :], x, x[..., : self.reach]], dim=3)
-        answer: Tensor = nn.functional.silu(self.norm(self.conv(wrapped)))
-        return answer
+    def forward(self, picture: Tensor) -> Tensor:
+        """Return (K, C, H / 4, W / 4) of grey levels (K, 1, H, W).
+
+        Always in float32: eight bits of mantissa lose a small contrast on a bright surface.
+        """
+        with torch.autocast("cpu", enabled=False):
+            mean = _surroundings(picture)
+            variance = (_surroundings(picture * picture) - mean * mean).clamp(min=0)
+            gain = 1 / torch.sqrt(variance + NOISE_DN2)
+            sums = self.filters.weight.sum((1, 2, 3))[None, :, None, None]
+            wide = functional.pad(picture, (CELL_PX // 2,) * 4, mode="replicate")
+            answer: Tensor = self.filters(wide) * _twice(gain) - _twice(mean * gain) * sums
+            return functional.relu(answer + self.bias)
 
 
 class RingNet(nn.Module):
-    """The network: bands (K, 1, 192, 672) uint8 to offset (px) and presence (0..1) by sector, (K, 2, 84)."""
+    """The network: pictures (K, 1, H, W) uint8 at 52 µm/px to covered fractions (K, 8, H / 4, W / 4).
+
+    H and W are multiples of 16. The eight values of a cell are those of `station.vision.marks`.
+    """
 
     def __init__(self) -> None:
         super().__init__()
-        self.stem = nn.Sequential(_Wrap(1, 16, size=5, stride=(2, 4)), _Wrap(16, 32, size=3, stride=(2, 2)))
-        self.body = nn.ModuleList([_Wrap(32, 32, size=3, stride=(1, 1), dilation=d) for d in (1, 2, 4, 2, 1)])
-        self.where = nn.Conv2d(32, 1, 1)
-        self.there = nn.Linear(32, 1)
-        places = (torch.arange(ROWS // BIN_PX, dtype=torch.float32) + 0.5) * BIN_PX - ROWS / 2
-        self.places_px: Tensor
-        self.register_buffer("places_px", places[None, :, None])
+        self.quarter = _Stem(16)
+        self.eighth = nn.Sequential(Conv(16, 48, 2, 2), Mix(48, 3))
+        self.sixteenth = nn.Sequential(Conv(48, 96, 2, 2), Mix(96, 5), Mix(96, 5), Mix(96, 5))
+        self.down_eighth = nn.Conv2d(96, 48, 1)
+        self.join_eighth = Mix(48, 3)
+        self.down_quarter = nn.Conv2d(48, 16, 1)
+        self.join_quarter = Mix(16, 3)
+        self.marks = nn.Conv2d(16, CHANNELS, 1)
 
-    def forward(self, bands: Tensor) -> Tensor:
-        """Find offsets (outwards positive, from the middle of the band) and presences."""
-        x = bands.to(torch.float32)
-        centred = x - x.mean(dim=(2, 3), keepdim=True)
-        x = self.stem(centred / (torch.sqrt((centred * centred).mean(dim=(2, 3), keepdim=True)) + 2.0))
-        for block in self.body:
-            x = x + block(x)
-        weight = torch.softmax(self.where(x)[:, 0], dim=1)
-        offset = (weight * self.places_px).sum(dim=1)
-        pooled = (x * weight[:, None]).sum(dim=2)
-        presence = torch.sigmoid(self.there(pooled.transpose(1, 2))[..., 0])
-        return torch.stack([offset, presence], dim=1)
+    def forward(self, pictures: Tensor) -> Tensor:
+        """Return the logits of the covered fractions."""
+        quarter = self.quarter(pictures.to(torch.float32))
+        eighth = self.eighth(quarter)
+        coarse = self.down_eighth(self.sixteenth(eighth))
+        eighth = self.join_eighth(functional.relu(_twice(coarse) + eighth))
+        quarter = self.join_quarter(functional.relu(_twice(self.down_quarter(eighth)) + quarter))
+        answer: Tensor = self.marks(quarter)
+        return answer
+
+
+def cells_of(parts: Tensor) -> Tensor:
+    """Return (K, 2 * 4, H, W) of parts of cells (K, 2, 2 H, 2 W), in the order of the network's channels."""
+    return functional.pixel_unshuffle(parts, SPLIT)
+
+
+def _surroundings(x: Tensor) -> Tensor:
+    """Return the mean (K, 1, H / 8, W / 8) over the surroundings of each area."""
+    pooled = functional.avg_pool2d(x, POOL_PX)
+    return functional.avg_pool2d(pooled, AREAS, 1, AREAS // 2, count_include_pad=False)
+
+
+def _twice(x: Tensor) -> Tensor:
+    return functional.interpolate(x, scale_factor=2.0, mode="nearest")

@@ -1,4 +1,4 @@
-"""Runs the networks: classifier (crops to scores and defect maps) and ring network (band to ring offsets).
+"""Runs the networks: classifier (crops to scores and defect maps), ring network (picture to marks).
 
 This is the station's only file that imports onnxruntime. A classifier file describes itself in its metadata
 and is refused without them; a ring network is recognised by its input.
@@ -19,7 +19,8 @@ from station.classify.thresholds import Limit, Thresholds
 from station.defects import KINDS, DefectKind, kind_named
 from station.domain import SEGMENT_PX, Image, SegmentScores
 from station.errors import ModelError
-from station.vision.polar import COLUMNS, ROWS, SECTORS
+from station.vision.marks import CELL_PX, CHANNELS, Marks
+from station.vision.reduced import FINDER_UM_PER_PX
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,8 @@ APPEARANCE_SIZE = 192
 """Number of appearance features of a crop."""
 SEEN_COLUMNS = 16
 """Columns of a crop for which the network says how much of the weld is hidden."""
+PADDING_PX = 16
+"""Pixels of which the ring network takes whole multiples along each side."""
 METADATA_KEYS = (
     "weldgate.classes",
     "weldgate.thresholds",
@@ -142,37 +145,28 @@ class Classifier:
 
 
 class RingNetwork:
-    """The network that finds the weld's centre line in an unwrapped band (`station.vision.polar`)."""
+    """The network that marks weld and bare joint on a picture at 52 µm/px (`station.vision.marks`)."""
 
     def __init__(self, path: Path, threads: int = 2) -> None:
         """Load and warm up the network. Raises ModelError if the file is not a ring network."""
         self._network = Network(path, threads)
         self.file_hash = self._network.file_hash
-        _check_input(path, self._network.session, "bands", [1, ROWS, COLUMNS])
-        self(np.zeros((ROWS, COLUMNS), np.uint8))
+        _check_ring(path, self._network.session)
+        self(np.zeros((PADDING_PX, PADDING_PX), np.uint8))
 
-    def __call__(self, band: Image) -> tuple[Array, Array]:
-        """Return offset in px (84,), positive outwards, and presence 0 to 1 (84,) of the sectors of a band.
+    def __call__(self, picture: Image) -> Marks:
+        """Return the marks on a picture (height, width) uint8 at 52 µm/px. Raises ModelError.
 
-        `band` is (192, 672) uint8. The result is the mean over its four mirror images, because a mirrored
-        weld is also a weld. Raises ModelError.
+        The picture's last row and column are repeated up to a multiple of 16 px, and marked like the rest.
         """
-        a, b, c, d = self.sectors(np.stack([band, band[:, ::-1], band[::-1], band[::-1, ::-1]]))
-        offset = (a[0] + b[0, ::-1] - c[0] - d[0, ::-1]) / 4
-        return offset, (a[1] + b[1, ::-1] + c[1] + d[1, ::-1]) / 4
-
-    def sectors(self, bands: Image) -> Array:
-        """Return offsets and presences (K, 2, 84) of bands (K, 192, 672) uint8, without mirror images.
-
-        Raises ModelError.
-        """
-        (output,) = self._network.run(("sectors",), {"bands": bands[:, None]})
-        sectors = np.asarray(output, np.float64)
-        if sectors.shape != (len(bands), 2, SECTORS) or not np.isfinite(sectors).all():
-            raise ModelError(
-                f"ring network failed: the output is not a set of offsets (shape {sectors.shape})"
-            )
-        return sectors
+        height, width = picture.shape
+        below, right = -height % PADDING_PX, -width % PADDING_PX
+        padded = np.pad(picture, ((0, below), (0, right)), mode="edge")
+        (output,) = self._network.run(("marks",), {"picture": padded[None, None]})
+        shape = (1, CHANNELS, padded.shape[0] // CELL_PX, padded.shape[1] // CELL_PX)
+        if output.shape != shape or not ((output >= 0) & (output <= 1)).all():
+            raise ModelError(f"ring network failed: the output is not a set of marks (shape {output.shape})")
+        return Marks(output[0])
 
 
 class SeenNetwork:
@@ -201,7 +195,23 @@ class SeenNetwork:
         return hidden
 
 
-def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: list[int]) -> None:
+def _check_ring(path: Path, session: ort.InferenceSession) -> None:
+    """Raise ModelError if a file is not a ring network of today's form and scale."""
+    metadata = session.get_modelmeta().custom_metadata_map
+    scale = metadata.get("weldgate.um_per_px")
+    if scale is None or {output.name for output in session.get_outputs()} != {"marks"}:
+        raise ModelError(
+            f"{path}: not a ring network, or one of an earlier form; make one with weldgate-models train-ring"
+        )
+    if scale != str(FINDER_UM_PER_PX):
+        raise ModelError(
+            f"{path}: trained at {scale} µm/px, needed {FINDER_UM_PER_PX}; "
+            "make one with weldgate-models train-ring"
+        )
+    _check_input(path, session, "picture", [1, "height", "width"])
+
+
+def _check_input(path: Path, session: ort.InferenceSession, name: str, shape: list[int | str]) -> None:
     inputs = session.get_inputs()
     got = list(inputs[0].shape[1:])
     if len(inputs) != 1 or inputs[0].name != name or inputs[0].type != "tensor(uint8)" or got != shape:

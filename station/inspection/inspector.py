@@ -11,7 +11,7 @@ from station.classify.drift import read_reference
 from station.classify.onnx import APPEARANCE_SIZE
 from station.classify.thresholds import in_use
 from station.defects import Reason
-from station.domain import NETWORK_UM_PER_PX, Image, Inspection, Ring, SegmentScores, Timing, Verdict
+from station.domain import Image, Inspection, Ring, SegmentScores, Timing, Verdict
 from station.errors import LocateError, ModelError
 from station.inspection.networks import Networks
 from station.inspection.verdict import Novelty, decide
@@ -19,7 +19,6 @@ from station.settings.model import ModelSettings, QualitySettings, WeldSettings
 from station.settings.view import view_problem
 from station.vision.locate import Expected, Located, locate
 from station.vision.quality import gate, measure
-from station.vision.rescale import from_network_scale, to_network_scale
 from station.vision.seen import causes, hidden_columns, measure_segments, visible_fractions
 from station.vision.unwrap import in_view, segments, unwrap
 
@@ -49,8 +48,7 @@ class Inspector:
         self._weld = weld
         self._quality = quality
         self._novel = model.novel
-        px_per_mm = 1000.0 / NETWORK_UM_PER_PX
-        self._expected = Expected(weld.radius_mm * px_per_mm, weld.radius_tolerance_mm * px_per_mm)
+        self._expected = Expected(weld.radius_mm, weld.radius_tolerance_mm)
         self.card = card = networks.classifier.card
         path = model.reference_path
         self.reference = None if path is None else read_reference(path, card.file_hash, APPEARANCE_SIZE)
@@ -72,13 +70,7 @@ class Inspector:
 
     def _located(self, image: Image) -> Located:
         """Return the ring in pixels of the image, and where weld or joint lies on it."""
-        scaled = to_network_scale(image, um_per_px=self.um_per_px)
-        found = locate(scaled, self._expected, self._ring_network)
-        ring = from_network_scale(found.ring, um_per_px=self.um_per_px)
-        height, width = image.shape
-        if not in_view(ring, width, height, um_per_px=self.um_per_px):
-            raise LocateError("the weld is not wholly in view", out_of_view=True)
-        return replace(found, ring=ring)
+        return locate(image, self._expected, self._ring_network, um_per_px=self.um_per_px)
 
     def is_novel(self, judged: Inspection) -> bool:
         """Return whether a part differs from all training images, so that its verdict is less reliable."""

@@ -8,10 +8,7 @@ from models.classifier import export as export_file
 from models.classifier.export import Contract, export, read_network
 from models.classifier.network import STATISTICS, WeldNet
 from models.errors import LearningError
-from models.ring.export import export_ring
-from models.ring.network import RingNet
-from models.ring.pair import pair_rings
-from station.classify.onnx import CLASSES, Classifier, RingNetwork
+from station.classify.onnx import CLASSES, Classifier
 from tests.conftest import RING_MODEL
 from tests.models.made import limits
 
@@ -71,13 +68,6 @@ def test_only_a_classifier_can_be_trained_further() -> None:
         read_network(RING_MODEL)
 
 
-def test_the_ring_file_answers_like_the_network(tmp_path: Path) -> None:
-    torch.manual_seed(1)
-    export_ring(RingNet(), tmp_path / "r.onnx", "1", "d" * 64)
-    offset, presence = RingNetwork(tmp_path / "r.onnx")(np.zeros((192, 672), np.uint8))
-    assert offset.shape == presence.shape == (84,)
-
-
 def test_a_file_that_differs_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(export_file, "TOLERANCE", -1.0)
     with pytest.raises(LearningError, match="nothing kept"):
@@ -90,17 +80,3 @@ def test_brightness_and_contrast_are_taken_out_inside_the_graph() -> None:
     crop = torch.from_numpy(np.random.default_rng(5).integers(40, 100, (1, 1, 128, 128), dtype=np.uint8))
     with torch.no_grad():
         assert torch.allclose(network(crop)[0], network(crop * 2)[0], atol=0.15)
-
-
-def test_a_pair_of_ring_networks_answers_as_their_mean(tmp_path: Path) -> None:
-    torch.manual_seed(3)
-    export_ring(RingNet(), tmp_path / "other.onnx", "7", "e" * 64)
-    pair_rings(RING_MODEL, tmp_path / "other.onnx", tmp_path / "pair", "8")
-    band = np.random.default_rng(4).integers(0, 256, (1, 192, 672), dtype=np.uint8)
-    (o1, p1), (o2, p2) = (
-        RingNetwork(path).sectors(band)[0] for path in (RING_MODEL, tmp_path / "other.onnx")
-    )
-    offset, presence = RingNetwork(tmp_path / "pair" / "ring.onnx").sectors(band)[0]
-    assert presence == pytest.approx((p1 + p2) / 2, abs=1e-4)
-    assert offset == pytest.approx((3 * p1 * o1 + p2 * o2) / (3 * p1 + p2), abs=1e-3)
-    assert "e" * 64 in (tmp_path / "pair" / "RING.md").read_text()

@@ -1,6 +1,6 @@
 import pytest
 
-from station.classify.onnx import Classifier, RingNetwork
+from station.classify.onnx import Classifier
 from station.inspection.inspector import Inspector
 from station.inspection.networks import Networks, load_networks
 from station.settings.model import ModelSettings, QualitySettings, WeldSettings
@@ -17,12 +17,6 @@ def networks() -> Networks:
 def classifier(networks: Networks) -> Classifier:
     """The shipped model."""
     return networks.classifier
-
-
-@pytest.fixture(scope="session")
-def ring_network(networks: Networks) -> RingNetwork:
-    """The shipped ring network."""
-    return networks.ring
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station.classify.onnx import RingNetwork
 from station.defects import KINDS, Reason
 from station.domain import SEGMENT_DEG, SEGMENT_PX, SEGMENTS, Image, Inspection, Ring, Unseen, Verdict
 from station.engine.plc_result import plc_result
@@ -116,8 +115,8 @@ def test_the_values_are_those_of_their_definitions() -> None:
         assert quality.sharpness == pytest.approx(np.sqrt((curved**2).mean()) / values.mean())
 
 
-def test_weld_is_seen_all_round_a_good_part(frames: dict[str, Image], ring_network: RingNetwork) -> None:
-    found = locate(frames[label_with("OK")["frame"]], Expected(), ring_network)
+def test_weld_is_seen_all_round_a_good_part(frames: dict[str, Image], networks: Networks) -> None:
+    found = locate(frames[label_with("OK")["frame"]], Expected(), networks.ring, um_per_px=13.0)
     assert found.presence.shape == (SECTORS,)
     assert ((found.presence >= 0) & (found.presence <= 1)).all()
     assert float(np.mean(found.presence >= MIN_PRESENCE)) == found.ring.support == 1.0
