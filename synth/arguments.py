@@ -76,8 +76,11 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
     pictures = add("pictures", "Draw welds of many kinds without ray tracing: a lot.")
     _out_option(pictures, "DIR", "write into this folder; a killed run continues where it stopped")
     pictures.add_argument("--count", type=int, default=1000, help="draw this many (default: %(default)s)")
-    use = "ring: rings of any size at 52 um/px; crops: the line's at 13 um/px (default: %(default)s)"
-    pictures.add_argument("--use", choices=("ring", "crops"), default="ring", help=use)
+    use = (
+        "ring: rings of any size at 52 um/px; plugs: those of turned plugs; crops: the line's at 13 um/px "
+        "(default: %(default)s)"
+    )
+    pictures.add_argument("--use", choices=("ring", "plugs", "crops"), default="ring", help=use)
     pictures.add_argument("--seed", type=int, default=0, help="draw with this seed: same seed, same pictures")
     pictures.add_argument("--workers", type=int, default=os.cpu_count() or 1, metavar="N", help=processes)
 

@@ -62,6 +62,11 @@ def steepened(rng: np.random.Generator) -> float:
     return log_uniform(rng, (1.0, 3.0))
 
 
+def softened(rng: np.random.Generator, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return the picture as a lens out of focus gives it."""
+    return np.asarray(cv2.GaussianBlur(image, (0, 0), log_uniform(rng, (0.5, 2.2))), np.uint8)
+
+
 def harsh_picture(rng: np.random.Generator, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return the picture as many cameras and people make it: sharpened, or stretched in contrast."""
     seen = image

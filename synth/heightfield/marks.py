@@ -116,10 +116,20 @@ def add_dirt(rng: np.random.Generator, surface: Surface, joint: Joint, half_widt
         _data_matrix(rng, surface, outside)
 
 
-def add_tack(rng: np.random.Generator, surface: Surface, joint: Joint, half_width_mm: float) -> None:
-    """Add a short straight weld beside the ring, as of a tab. It is a bead, but not the ring's."""
+def add_tack(
+    rng: np.random.Generator,
+    surface: Surface,
+    joint: Joint,
+    half_width_mm: float,
+    *,
+    apart: tuple[float, float] = (1.2, 6),
+) -> None:
+    """Add a short straight weld beside the ring, as of a tab. It is a bead, but not the ring's.
+
+    `apart` is the range of its distance from the joint, in half-widths.
+    """
     angle = uniform(rng, (0, 2 * np.pi))
-    away = joint.radius_mm + half_width_mm * uniform(rng, (1.2, 6))
+    away = joint.radius_mm + half_width_mm * uniform(rng, apart)
     u_mm = (surface.x_mm - np.float32(joint.x_mm)) * np.float32(np.cos(angle)) + (
         surface.y_mm - np.float32(joint.y_mm)
     ) * np.float32(np.sin(angle))

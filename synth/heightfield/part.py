@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from synth.heightfield.bead import BeadCells, Course, lay_bead
 from synth.heightfield.grid import Grid
-from synth.heightfield.harsh import add_harsh_dirt, harsh_picture, steepened
+from synth.heightfield.harsh import add_harsh_dirt, harsh_picture, softened, steepened
 from synth.heightfield.holes import FAMILIES as HOLES
 from synth.heightfield.holes import DrilledHole, drill
 from synth.heightfield.marks import add_circles, add_dirt, add_edge, add_spot, add_tack
+from synth.heightfield.plug import add_profile
 from synth.heightfield.sensor import photograph
-from synth.heightfield.shade import draw_light, shade, shadow
+from synth.heightfield.shade import draw_light, shade, shadow, with_side_light
 from synth.heightfield.sheet import FINISHES
 from synth.heightfield.sheets import Joint, make_sheets
 from synth.heightfield.surface import Place, Surface
@@ -44,6 +45,8 @@ class Order:
     """Fraction of the pictures in which the weld is hard to find: see `synth.heightfield.harsh`."""
     bare: float = 0.0
     """Fraction of the welds of which there is nothing but the joint."""
+    plugs: float = 0.0
+    """Fraction of the pictures whose disc is a turned plug, with a steep bead: see `synth.heightfield.plug`."""
     sheets: Sequence[str] = tuple(FINISHES)
     welds: Sequence[str] = tuple(WELDS)
     hole_families: Sequence[str] = tuple(HOLES)
@@ -51,6 +54,9 @@ class Order:
 
 ORDERS = {
     "ring": Order(um_per_px=52.0, factor=2, harsh=0.5, bare=0.05),
+    "plugs": Order(
+        um_per_px=52.0, factor=2, half_width_mm=(0.4, 1.0), missing=0.1, holes=0.15, harsh=0.3, plugs=1.0
+    ),
     "crops": Order(
         um_per_px=13.0,
         side_mm=14.6,
@@ -60,7 +66,8 @@ ORDERS = {
         no_weld=0.0,
     ),
 }
-"""Pictures by what they train: whole rings of any size, coarse; and the line's ring, at the crops' scale."""
+"""Pictures by what they train: whole rings of any size, coarse; those round turned plugs; and the line's ring,
+at the crops' scale."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -93,7 +100,11 @@ def picture(seed: int, order: Order) -> Pictured:
     has_weld = rng.random() >= order.no_weld
     extra = stream(seed, Stream.HEIGHTFIELD, "harsh")
     is_harsh, is_bare = extra.random() < order.harsh, extra.random() < order.bare
+    turned = stream(seed, Stream.HEIGHTFIELD, "plug")
+    is_plug = turned.random() < order.plugs
     surface, sheet = make_sheets(rng, grid, joint, order.sheets, is_joined=has_weld)
+    if is_plug:
+        add_profile(turned, surface, joint, radius_mm=radius - uniform(turned, (0.3, 1.3)) * half)
     add_circles(rng, surface, joint, keep_off_mm=1.25 * half)
     course, weld = None, None
     holes: tuple[DrilledHole, ...] = ()
@@ -111,24 +122,31 @@ def picture(seed: int, order: Order) -> Pictured:
         if is_bare:
             course = replace(course, missing_deg=((0.0, 360.0),))
         steepness = steepened(extra) if is_harsh else 1.0
+        steepness *= steepened(turned) if is_plug else 1.0
         weld, cells = lay_bead(rng, surface, course, order.welds, steepness=steepness)
         holes = _drill(rng, surface, course, cells, order)
     else:
         _add_spots(rng, surface, joint)
     if rng.random() < 0.12:
         add_tack(rng, surface, joint, half)
+    for _ in range(int(turned.integers(0, 3)) if is_plug else 0):
+        add_tack(turned, surface, joint, half, apart=(0.8, 2.2))
     add_dirt(rng, surface, joint, half)
     if rng.random() < 0.25:
         add_edge(rng, surface, joint, reach_mm=half + 0.3)
     if is_harsh:
         add_harsh_dirt(extra, surface, joint, half)
     light = draw_light(rng)
+    if is_plug and turned.random() < 0.6:
+        light = with_side_light(turned, light)
     depth = uniform(rng, (0.3, 1.5))
     radiance = shade(
         surface.height_mm, np.clip(surface.roughness, 0.05, 0.6), light, surface.x_mm, surface.y_mm
     )
     radiance *= np.clip(surface.reflectance, 0.0, 1.2) * shadow(surface.height_mm, grid.cell_mm, depth)
     image = photograph(rng, radiance, surface.x_mm, surface.y_mm, factor=order.factor)
+    if is_plug and turned.random() < 0.5:
+        image = softened(turned, image)
     if is_harsh:
         image = harsh_picture(extra, image)
     place = most_frequent(surface.place, order.factor)

@@ -50,6 +50,17 @@ def draw_light(rng: np.random.Generator) -> Light:
     return Light(np.concatenate(directions), np.concatenate(strength), log_uniform(rng, (0.005, 0.15)))
 
 
+def with_side_light(rng: np.random.Generator, light: Light) -> Light:
+    """Return the light with another one from the side, up to three times as strong."""
+    own = _directions(rng, "side")
+    weight = float(light.strength.sum()) * log_uniform(rng, (0.3, 3.0)) / len(own)
+    return Light(
+        np.concatenate([light.directions, own]),
+        np.concatenate([light.strength, np.full(len(own), weight)]),
+        light.ambient,
+    )
+
+
 def _directions(rng: np.random.Generator, kind: str) -> Array:
     if kind == "coaxial":
         spread = uniform(rng, (0.7, 1.5))
