@@ -14,6 +14,8 @@ SPLIT = 2
 """Number of parts into which a cell is split along each side."""
 PART_PX = CELL_PX / SPLIT
 """Side of a part of a cell in px of the reduced picture: 0.1 mm."""
+JOINT_WEIGHT = 2.0
+"""Weight of bare joint, which is about half as wide as the narrowest bead, in the marks of an area."""
 CHANNELS = 2 * SPLIT * SPLIT
 """Number of values of a cell: bead, then bare joint, of its parts row by row."""
 
@@ -41,8 +43,13 @@ class Marks:
     columns are even."""
 
     def areas(self) -> Field:
-        """Return the fraction of each area (rows / 2, columns / 2) that bead or bare joint covers."""
-        joined = np.minimum(self.values.sum(axis=0) / np.float32(SPLIT * SPLIT), np.float32(1))
+        """Return how much bead and bare joint, which weighs more, there is in each area (rows / 2, columns / 2).
+
+        The values are 0 to 1.
+        """
+        parts = SPLIT * SPLIT
+        bead, joint = self.values[:parts].mean(axis=0), self.values[parts:].mean(axis=0)
+        joined = np.minimum(bead + np.float32(JOINT_WEIGHT) * joint, np.float32(1))
         rows, columns = joined.shape
         size = (columns * CELL_PX // AREA_PX, rows * CELL_PX // AREA_PX)
         return np.asarray(cv2.resize(joined, size, interpolation=cv2.INTER_AREA), np.float32)
