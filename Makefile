@@ -52,7 +52,10 @@ networks: $(VENV)/.dev ## draw the pictures of the ring and the seen network aga
 	$(BIN)/weldgate-synth pictures --use ring --seed 16 --count 1500 --out $(LOTS_FOLDER)/ring-16
 	$(BIN)/weldgate-synth pictures --use crops --seed 23 --count 450 --out $(LOTS_FOLDER)/crops-23
 	$(BIN)/weldgate-synth pictures --use crops --seed 24 --count 450 --out $(LOTS_FOLDER)/crops-24
-	$(BIN)/weldgate-models train-ring $(LOTS_FOLDER)/ring-16 --steps 5000 --version 0.3.0 --out build/networks
+	$(BIN)/weldgate-synth pictures --use ring --seed 17 --count 2000 --out $(LOTS_FOLDER)/ring-17
+	$(BIN)/weldgate-synth pictures --use plugs --seed 18 --count 1000 --out $(LOTS_FOLDER)/plugs-18
+	$(BIN)/weldgate-models train-ring $(LOTS_FOLDER)/ring-16 $(LOTS_FOLDER)/ring-17 $(LOTS_FOLDER)/plugs-18 \
+		--steps 20000 --version 0.3.0 --out build/networks
 	$(BIN)/weldgate-models train-seen $(LOTS_FOLDER)/crops-23 $(LOTS_FOLDER)/crops-24 --steps 4500 --seed 1 \
 		--version 0.3.0 --out build/networks
 

@@ -53,6 +53,13 @@ def _inspector(arguments: argparse.Namespace) -> "Inspector":
     return load_inspector(settings.model_copy(update={"model": model}))[0]
 
 
+def _one_thread() -> None:
+    """Train in one thread: two of them wait for each other by spinning, which stalls a busy machine."""
+    import torch
+
+    torch.set_num_threads(1)
+
+
 def _print(line: str) -> None:
     print(line, flush=True)
 
@@ -114,6 +121,7 @@ def _train_ring(arguments: argparse.Namespace) -> int:
     from models.ring.train import RingPlan, train_ring
     from station.classify.onnx import RingNetwork
 
+    _one_thread()
     out, left_out = arguments.out, arguments.leave_out
     training, held_out = split(read_pictures(arguments.lots), left_out)
     given = {"seed": arguments.seed, "steps": arguments.steps}
@@ -156,6 +164,7 @@ def _train_seen(arguments: argparse.Namespace) -> int:
     from models.seen.export import export_seen
     from models.seen.train import SeenPlan, seen_card, train_seen
 
+    _one_thread()
     plan = SeenPlan(steps=arguments.steps, seed=arguments.seed, leave_out=tuple(arguments.leave_out))
     network, found = train_seen(arguments.lots, plan, _print)
     arguments.out.mkdir(parents=True, exist_ok=True)

@@ -20,7 +20,7 @@ from station.settings.view import view_problem
 from station.vision.locate import Expected, Located, locate
 from station.vision.quality import gate, measure
 from station.vision.seen import causes, hidden_columns, measure_segments, visible_fractions
-from station.vision.unwrap import in_view, segments, unwrap
+from station.vision.unwrap import segments, unwrap
 
 APPEARANCE_DECIMALS = 3
 """Decimals to which a part's appearance features, which are about 1, are rounded."""

@@ -43,9 +43,9 @@ class Marks:
     columns are even."""
 
     def areas(self) -> Field:
-        """Return how much bead and bare joint, which weighs more, there is in each area (rows / 2, columns / 2).
+        """Return how much bead and bare joint, which weighs more, is in each area: 0 to 1.
 
-        The values are 0 to 1.
+        There are (rows / 2, columns / 2) areas.
         """
         parts = SPLIT * SPLIT
         bead, joint = self.values[:parts].mean(axis=0), self.values[parts:].mean(axis=0)

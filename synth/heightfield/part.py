@@ -46,7 +46,7 @@ class Order:
     bare: float = 0.0
     """Fraction of the welds of which there is nothing but the joint."""
     plugs: float = 0.0
-    """Fraction of the pictures whose disc is a turned plug, with a steep bead: see `synth.heightfield.plug`."""
+    """Fraction of the pictures whose disc is a turned plug, with a steep bead: see the module `plug`."""
     sheets: Sequence[str] = tuple(FINISHES)
     welds: Sequence[str] = tuple(WELDS)
     hole_families: Sequence[str] = tuple(HOLES)
@@ -66,8 +66,8 @@ ORDERS = {
         no_weld=0.0,
     ),
 }
-"""Pictures by what they train: whole rings of any size, coarse; those round turned plugs; and the line's ring,
-at the crops' scale."""
+"""Pictures by what they train: whole rings of any size, coarse; those round turned plugs; and the line's
+ring, at the crops' scale."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

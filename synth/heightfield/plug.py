@@ -21,7 +21,7 @@ def add_profile(rng: np.random.Generator, surface: Surface, joint: Joint, *, rad
 
 
 def _turn(rng: np.random.Generator, surface: Surface, away: Field, *, inner: float, outer: float) -> None:
-    """Turn one zone: all within `outer` is raised or lowered, over a chamfer; grooves lie in the zone alone."""
+    """Turn one zone: all within `outer` is raised or lowered, over a chamfer; only the zone has grooves."""
     chamfer = min(log_uniform(rng, (0.02, 0.8)), outer)
     within = 1 - smooth_step(away, outer - chamfer, outer)
     if rng.random() < 0.7:

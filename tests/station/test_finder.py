@@ -68,6 +68,19 @@ def test_less_than_the_minimum_support_is_no_weld(start: float, fraction: float)
         search(partly(start, fraction))
 
 
+@given(st.floats(0.6, 1.0))
+@settings(max_examples=10)
+def test_nothing_but_a_bare_joint_is_found(coverage: float) -> None:
+    def find(picture: Image) -> Marks:
+        x, y = parts_of(picture)
+        joint = coverage * arc(x, y, circle=(500, 260, 107.3), half=JOINT_PX)
+        return marks_of(0 * joint, joint)
+
+    found = search(find)
+    assert np.hypot(found.ring.center_x_px - 500, found.ring.center_y_px - 260) < 0.2
+    assert found.ring.support > 0.95
+
+
 @given(st.floats(0, 1), st.floats(0.5, 0.9), st.floats(-1.2, 1.2))
 @settings(max_examples=30)
 def test_a_joint_beside_the_bead_is_seen_but_hardly_moves_the_circle(

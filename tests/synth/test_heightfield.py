@@ -168,6 +168,30 @@ def test_what_is_harsh_changes_only_the_pictures_that_are() -> None:
     assert np.array_equal(picture(8, mild).image, picture(8, replace(mild, harsh=1e-9)).image)
 
 
+def test_a_plug_changes_only_the_pictures_that_have_one() -> None:
+    without, some, plug = (replace(SMALL, no_weld=0.0, plugs=fraction) for fraction in (0.0, 1e-9, 1.0))
+
+    assert np.array_equal(picture(8, without).image, picture(8, some).image)
+    assert not np.array_equal(picture(8, without).image, picture(8, plug).image)
+
+
+def test_the_zones_of_a_plug_lie_within_the_bead() -> None:
+    order = replace(ORDERS["plugs"], factor=1, missing=0.0, holes=0.0, no_weld=0.0, harsh=0.0)
+    beside = replace(order, plugs=0.0)
+    turned, plain = picture(21, order), picture(21, beside)
+    assert turned.course == plain.course
+    course = turned.course
+    assert course is not None
+    side = turned.image.shape[0]
+    at_mm = (np.arange(side) - (side - 1) / 2) * order.um_per_px / 1000
+    away = np.hypot(*np.meshgrid(at_mm - course.x_mm, at_mm - course.y_mm)) - course.radius_mm
+    on_ring = np.abs(away) < 0.5 * course.half_width_mm
+
+    assert np.mean(turned.place[on_ring] == Place.BEAD) > 0.99
+    inside = away < -1.4 * course.half_width_mm
+    assert not np.isin(turned.place[inside], (Place.BEAD, Place.HOLE)).any()
+
+
 def test_a_bare_part_shows_its_joint_all_round() -> None:
     drawn = picture(12, replace(SMALL, no_weld=0.0, holes=0.0, bare=1.0, harsh=0.0))
 
