@@ -103,8 +103,10 @@ def _train_ring(ring: argparse.ArgumentParser) -> None:
     ring.add_argument("--steps", type=int, metavar="N", help="number of batches of 8 (default: 9000)")
     ring.add_argument(
         "--leave-out",
+        nargs="+",
+        default=[],
         metavar="NAME",
-        help="hold out this weld family or sheet finish (default: every tenth picture)",
+        help="hold out these weld families and sheet finishes (default: every tenth picture)",
     )
 
 

@@ -35,9 +35,9 @@ def ring_card(
     )
 
 
-def command(lots: Sequence[Path], *, seed: int, steps: int, leave_out: str | None) -> str:
+def command(lots: Sequence[Path], *, seed: int, steps: int, leave_out: Sequence[str]) -> str:
     """Return the command line of a run, lots named by their folders alone."""
-    left_out = f" --leave-out {leave_out}" if leave_out else ""
+    left_out = f" --leave-out {' '.join(leave_out)}" if leave_out else ""
     names = " ".join(lot.name for lot in lots)
     return f"weldgate-models train-ring {names} --seed {seed} --steps {steps}{left_out}"
 

@@ -35,6 +35,13 @@ class Picture:
     """Family of the weld."""
     sheet: str
     """Finish of the sheet."""
+    disc: str
+    """Finish of the disc inside the ring."""
+
+    @property
+    def families(self) -> set[str]:
+        """Names of its weld family and of its finishes."""
+        return {self.sheet, self.disc, *(() if self.weld is None else (self.weld,))}
 
 
 def read_pictures(lots: Sequence[Path]) -> list[Picture]:
@@ -42,21 +49,21 @@ def read_pictures(lots: Sequence[Path]) -> list[Picture]:
     return [picture for lot in lots for picture in _read_lot(lot)]
 
 
-def split(pictures: Sequence[Picture], left_out: str | None) -> tuple[list[Picture], list[Picture]]:
+def split(pictures: Sequence[Picture], left_out: Sequence[str]) -> tuple[list[Picture], list[Picture]]:
     """Return the pictures to train on and those held out.
 
-    Held out are those of the weld family or sheet finish `left_out`; without one, every tenth picture. Raises
+    Held out are those of the weld families and sheet finishes in `left_out`; without any, every tenth. Raises
     LearningError if either is empty.
     """
-    if left_out is None:
+    if not left_out:
         held = [index % HELD_OUT_EVERY == HELD_OUT_EVERY - 1 for index in range(len(pictures))]
     else:
-        held = [left_out in (picture.weld, picture.sheet) for picture in pictures]
+        held = [bool(picture.families & {*left_out}) for picture in pictures]
     training = [picture for picture, out in zip(pictures, held, strict=True) if not out]
     held_out = [picture for picture, out in zip(pictures, held, strict=True) if out]
     if not (training and held_out):
-        known = sorted({name for picture in pictures for name in (picture.weld, picture.sheet) if name})
-        what = "at least 10 pictures" if left_out is None else f"one of {', '.join(known)} to leave out"
+        known = sorted({name for picture in pictures for name in picture.families})
+        what = "at least 10 pictures" if not left_out else f"one of {', '.join(known)} to leave out"
         raise LearningError(f"{len(training)} pictures to train on, {len(held_out)} held out. Name {what}")
     return training, held_out
 
@@ -100,4 +107,5 @@ def _read_picture(lot: Path, entry: dict) -> Picture:  # type: ignore[type-arg] 
         circle=circle,
         weld=None if weld is None else str(weld),
         sheet=str(entry["sheet"]),
+        disc=str(entry.get("disc", entry["sheet"])),
     )

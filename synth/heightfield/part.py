@@ -80,6 +80,9 @@ class Pictured:
     """The weld, in mm from the picture's middle; None without one."""
     weld: str | None
     sheet: str
+    """Finish of the plate."""
+    disc: str
+    """Finish of the disc; that of the plate if there is no joint."""
     holes: tuple[DrilledHole, ...] = field(default=())
 
 
@@ -102,7 +105,7 @@ def picture(seed: int, order: Order) -> Pictured:
     is_harsh, is_bare = extra.random() < order.harsh, extra.random() < order.bare
     turned = stream(seed, Stream.HEIGHTFIELD, "plug")
     is_plug = turned.random() < order.plugs
-    surface, sheet = make_sheets(rng, grid, joint, order.sheets, is_joined=has_weld)
+    surface, (sheet, disc) = make_sheets(rng, grid, joint, order.sheets, is_joined=has_weld)
     if is_plug:
         add_profile(turned, surface, joint, radius_mm=radius - uniform(turned, (0.3, 1.3)) * half)
     add_circles(rng, surface, joint, keep_off_mm=1.25 * half)
@@ -150,7 +153,7 @@ def picture(seed: int, order: Order) -> Pictured:
     if is_harsh:
         image = harsh_picture(extra, image)
     place = most_frequent(surface.place, order.factor)
-    return Pictured(image=image, place=place, course=course, weld=weld, sheet=sheet, holes=holes)
+    return Pictured(image=image, place=place, course=course, weld=weld, sheet=sheet, disc=disc, holes=holes)
 
 
 def most_frequent(places: NDArray[np.uint8], factor: int) -> NDArray[np.uint8]:

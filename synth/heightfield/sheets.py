@@ -25,10 +25,10 @@ class Joint:
 
 def make_sheets(
     rng: np.random.Generator, grid: Grid, joint: Joint, finishes: Sequence[str], *, is_joined: bool
-) -> tuple[Surface, str]:
-    """Return the bare part, and the name of the finish of its plate, drawn from `finishes`.
+) -> tuple[Surface, tuple[str, str]]:
+    """Return the bare part, and the names of the finishes of plate and disc, drawn from `finishes`.
 
-    Without a joint there is one plate.
+    Without a joint there is one plate, and no disc in it.
     """
     x, y = grid.coordinates()
     plate_finish = str(rng.choice(list(finishes)))
@@ -54,7 +54,7 @@ def make_sheets(
     surface.reflectance *= np.exp(np.float32(uniform(rng, (0, 0.12))) * stains)
     if is_joined:
         _groove(rng, surface, joint, away)
-    return surface, plate_finish
+    return surface, (plate_finish, disc_finish)
 
 
 def _groove(rng: np.random.Generator, surface: Surface, joint: Joint, away: Field) -> None:

@@ -70,6 +70,7 @@ def _label(name: str, pictured: Pictured, um_per_px: float) -> dict[str, Any]:
         "frame": name,
         "size": [width, height],
         "sheet": pictured.sheet,
+        "disc": pictured.disc,
         "weld": pictured.weld,
         "center": None,
         "radius": None,

@@ -152,21 +152,21 @@ def test_a_wrong_lot_is_named(change, message: str, tmp_path: Path) -> None:  # 
 
 
 def test_every_tenth_picture_is_held_out(pictures: list[Picture]) -> None:
-    training, held_out = split(pictures, None)
+    training, held_out = split(pictures, [])
     assert [p.name for p in held_out] == ["part_009.png", "part_019.png"]
     assert len(training) + len(held_out) == len(pictures)
 
 
 @pytest.mark.parametrize("name", ["striped", "odd"])
 def test_a_weld_family_or_a_sheet_finish_is_left_out(name: str, pictures: list[Picture]) -> None:
-    training, held_out = split(pictures, name)
+    training, held_out = split(pictures, [name])
     assert all(name in (p.weld, p.sheet) for p in held_out)
     assert not any(name in (p.weld, p.sheet) for p in training)
 
 
 def test_an_unknown_name_is_answered_with_those_there_are(pictures: list[Picture]) -> None:
     with pytest.raises(LearningError, match=r"0 held out\. Name one of even, odd, plain, striped"):
-        split(pictures, "woven")
+        split(pictures, ["woven"])
 
 
 @given(st.integers(0, 10_000))
@@ -177,7 +177,7 @@ def test_a_sample_marks_the_bead_where_it_is(seed: int) -> None:
     _, mask = ring_picture(rng, x=120, y=118, radius=70)
     image = np.where(mask > 0, 220, 30).astype(np.uint8)
     masks = np.stack([mask * 255, 0 * mask], axis=2)
-    one = Picture(name="a", image=image, masks=masks, circle=None, weld=None, sheet="even")
+    one = Picture(name="a", image=image, masks=masks, circle=None, weld=None, sheet="even", disc="even")
     drawn = sample([one], np.ones(1), rng)
     assert drawn.image.shape == (SIDE_PX, SIDE_PX)
     assert drawn.coverage.shape == (2, SIDE_PX // 2, SIDE_PX // 2)
