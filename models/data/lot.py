@@ -99,10 +99,14 @@ def frames(
 
 
 def data_hash(folders: Sequence[Path]) -> str:
-    """Return the SHA-256 over labels, images and masks, if any, of lots, each in the order of their names."""
+    """Return the SHA-256 over labels, images and masks, if any, of lots, each in the order of their names.
+
+    What else labels.json says, such as how its parts were ordered, does not count.
+    """
     digest = hashlib.sha256()
     for folder in folders:
-        digest.update((folder / "labels.json").read_bytes())
+        labels = json.loads((folder / "labels.json").read_text(encoding="utf-8"))["frames"]
+        digest.update(json.dumps(labels, sort_keys=True).encode())
         for images in ("frames", "masks"):
             for path in sorted((folder / images).glob("*.png")):
                 digest.update(path.read_bytes())
