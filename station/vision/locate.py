@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from station.domain import Image, Ring
 from station.errors import LocateError
-from station.vision.circle import fit_circle
+from station.vision.circle import Prior, fit_circle
 from station.vision.marks import Marks
 from station.vision.polar import Array, read_sectors
 from station.vision.reduced import FINDER_UM_PER_PX, Circle, reduce_to_finder
@@ -126,7 +126,7 @@ def _search(marks: Marks, expected: Expected) -> _Fit:
     vote = best_circle(marks.areas(), radii_within(expected.radius_mm, expected.tolerance_mm))
     if vote.score < MIN_VOTE:
         raise _not_found(f"the best circle scores {vote.score:.2f}, minimum is {MIN_VOTE}", marks, expected)
-    fit = _fit(marks, vote.circle)
+    fit = _fit(marks, vote.circle, _prior(expected.radius_mm, expected.tolerance_mm / 2))
     if fit.support < MIN_SUPPORT:
         found = f"weld or joint on {fit.support:.0%} of the best circle, minimum is {MIN_SUPPORT:.0%}"
         raise _not_found(found, marks, expected)
@@ -135,11 +135,16 @@ def _search(marks: Marks, expected: Expected) -> _Fit:
     return fit
 
 
-def _fit(marks: Marks, circle: Circle) -> _Fit:
+def _prior(radius_mm: float, deviation_mm: float) -> Prior:
+    px = 1000 / FINDER_UM_PER_PX
+    return Prior(radius_mm * px, deviation_mm * px)
+
+
+def _fit(marks: Marks, circle: Circle, prior: Prior) -> _Fit:
     for _ in range(MAX_ROUNDS):
         before = circle
         sectors = read_sectors(marks, circle)
-        circle, residual_px = fit_circle(circle, sectors)
+        circle, residual_px = fit_circle(circle, sectors, prior)
         if (
             max(abs(circle.x - before.x), abs(circle.y - before.y), abs(circle.radius - before.radius))
             < STILL_PX
@@ -152,7 +157,7 @@ def _not_found(what: str, marks: Marks, expected: Expected) -> LocateError:
     """Return the error, which names a ring of another radius if there is one."""
     other = best_circle(marks.areas(), OTHER_RADII_MM)
     if other.score >= MIN_OTHER_VOTE:
-        fit = _fit(marks, other.circle)
+        fit = _fit(marks, other.circle, Prior(other.circle.radius, _NEAR_PX))
         apart = abs(fit.radius_mm - expected.radius_mm) > expected.tolerance_mm
         if apart and fit.support >= MIN_SUPPORT:
             what = f"a ring of {fit.radius_mm:.2f} mm; {_words(expected)}"

@@ -80,7 +80,7 @@ def test_the_lamp_gives_the_numbers_and_says_nothing_twice() -> None:
     shown = lamp(up, part(unseen_inspection(), at_s=1000.0), 1000.0)
     assert (shown.word, shown.detail) == ("ERROR", "segment not seen")
     assert shown.more == "segment 5: too dark (mean grey level 3.0, limit 10)"
-    numbers = "the best ring scores 0.10, the minimum is 0.22"
+    numbers = "the best circle scores 0.10, minimum is 0.25"
     lost = Inspection.error(Reason.NO_WELD_FOUND, detail=f"no weld found: {numbers}")
     shown = lamp(up, part(lost, at_s=1000.0), 1000.0)
     assert (shown.detail, shown.more) == ("no weld found", numbers)

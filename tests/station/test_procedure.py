@@ -245,7 +245,7 @@ def test_the_numbers_of_a_part_that_was_not_judged_reach_record_event_journal_an
     rig.procedure.inspect_part(TRIGGER, rig.loaded)
     detail = rig.event.record.inspection.detail
     assert detail is not None
-    assert re.fullmatch(r"no weld found: the best ring scores -?\d\.\d\d, the minimum is 0\.22", detail)
+    assert re.fullmatch(r"no weld found: the best circle scores -?\d\.\d\d, minimum is 0\.25", detail)
     (entry,) = read_records(rig.folder)
     assert entry.record is not None
     assert entry.record.inspection.detail == detail

@@ -138,7 +138,7 @@ def test_the_scale_of_the_settings_and_that_of_the_option_give_the_same_right_ve
         assert as_entry(done.results[item["frame"]])["segments"] == entry["segments"], "and the window"
         if um_per_px <= 39:
             lengths = [[f["length_mm"] for f in e["findings"]] for e in (entry, ours)]  # type: ignore[attr-defined]
-            assert lengths[0] == pytest.approx(lengths[1], rel=0.1), "mm of the part"
+            assert lengths[0] == pytest.approx(lengths[1], rel=0.15), "mm of the part"
 
 
 def test_a_record_is_judged_and_exported_at_the_scale_at_which_it_was_taken(

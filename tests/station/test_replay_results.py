@@ -178,7 +178,7 @@ def test_an_entry_of_another_form_is_an_error(damaged: dict[str, object]) -> Non
 
 
 def test_an_error_of_the_line_without_a_ring_is_inspected_but_has_no_scores() -> None:
-    line = "no weld found: the best ring scores 0.10, the minimum is 0.22"
+    line = "no weld found: the best circle scores 0.10, minimum is 0.25"
     inspection = Inspection.error(Reason.NO_WELD_FOUND, timing=Timing(locate_ms=3.0), detail=line)
     found = as_replayed("a.png", inspection)
     assert found.problem is None

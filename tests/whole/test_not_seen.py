@@ -74,7 +74,7 @@ def test_a_picture_of_something_else_is_never_ok(inspector: Inspector, name: str
     judged = inspector.inspect(_nothing(name))
 
     assert judged.verdict is not Verdict.OK
-    assert judged.detail
+    assert judged.detail or judged.verdict is Verdict.NOK
 
 
 @pytest.mark.parametrize("kind", ["hole", "missing_weld"])
