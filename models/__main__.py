@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from models.arguments import KINDS, SHIPPED, check_numbers, make_parser
 from models.errors import LearningError
 from station.errors import WeldgateError
+from station.files.destination import standard_output_free
 
 if TYPE_CHECKING:
     from models.data.crops import Crops
@@ -24,7 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = make_parser(COMMANDS).parse_args(argv)
     try:
         check_numbers(arguments)
-        return int(arguments.command(arguments))
+        with standard_output_free(vars(arguments).values()):
+            return int(arguments.command(arguments))
     except (LearningError, WeldgateError, OSError) as error:
         print(f"weldgate-models: {error}", file=sys.stderr)
         return 2

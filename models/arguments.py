@@ -6,6 +6,7 @@ from pathlib import Path
 
 from models.errors import LearningError
 from station.defects import KINDS as DEFECT_KINDS
+from station.files.destination import output_path
 
 SHIPPED = Path(__file__).resolve().parent / "shipped"
 """Folder of the shipped networks and their cards."""
@@ -172,7 +173,7 @@ def _export(export: argparse.ArgumentParser) -> None:
         metavar="DATASET",
         help="datasets with which the file is calibrated and both files are judged",
     )
-    export.add_argument("--out", type=Path, required=True, metavar="FILE", help="8-bit file to write")
+    export.add_argument("--out", type=output_path, required=True, metavar="FILE", help="8-bit file to write")
 
 
 def _drift(drift: argparse.ArgumentParser) -> None:
@@ -199,7 +200,7 @@ def _first_day(first: argparse.ArgumentParser) -> None:
     )
     first.add_argument(
         "--reference",
-        type=Path,
+        type=output_path,
         metavar="FILE",
         help="write the appearance of these parts for model.reference_path; needs at least 20 parts",
     )

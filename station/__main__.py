@@ -15,6 +15,7 @@ from station import __version__
 from station.cli.line import add_line_options
 from station.cli.records import add_commands
 from station.errors import WeldgateError
+from station.files.destination import output_path, standard_output_free
 from station.files.installation import SHIPPED_NETWORKS, room_command
 
 SETTINGS = Path("station.toml")
@@ -26,7 +27,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(argv)
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", stream=sys.stderr)
     try:
-        return int(arguments.command(arguments))
+        with standard_output_free(vars(arguments).values()):
+            return int(arguments.command(arguments))
     except (KeyboardInterrupt, BrokenPipeError):
         return 130
     except (WeldgateError, OSError) as error:
@@ -95,11 +97,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     replay.add_argument(
         "--json",
-        type=Path,
+        type=output_path,
         metavar="FILE",
-        help="write all results as JSON; an interrupted run continues where it stopped",
+        help="write all results as JSON (- for standard output); an interrupted run can be continued",
     )
-    replay.add_argument("--csv", type=Path, metavar="FILE", help="write one row per image")
+    replay.add_argument(
+        "--csv", type=output_path, metavar="FILE", help="write one row per image; - for standard output"
+    )
     replay.add_argument(
         "--report",
         type=Path,

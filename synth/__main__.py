@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING
 
+from station.files.destination import standard_output_free
 from synth.arguments import make_parser
 from synth.errors import SynthError
 from synth.part.recipe import Recipe
@@ -27,7 +28,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command. Returns 0 if it was done, 2 if not."""
     arguments = make_parser(COMMANDS).parse_args(argv)
     try:
-        arguments.command(arguments)
+        with standard_output_free(vars(arguments).values()):
+            arguments.command(arguments)
     except (SynthError, OSError) as error:
         print(f"weldgate-synth: {error}", file=sys.stderr)
         return 2

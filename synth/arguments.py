@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from station.files.destination import output_path
 from synth.part.switches import Switch
 from synth.recipes.named import LINE, RECIPES
 
@@ -94,7 +95,7 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
     read = "read this x3p, opd, sur, … or npy file (default: the shipped one)"
     measurement.add_argument("file", type=Path, nargs="?", metavar="FILE", help=read)
     measurement.add_argument("--step-um", type=float, metavar="UM", help="state the step of an npy file")
-    measurement.add_argument("--figure", type=Path, metavar="PNG", help="draw a figure to this file")
+    measurement.add_argument("--figure", type=output_path, metavar="PNG", help="draw a figure to this file")
 
     artificial = add("artificial", "Make an artificial surface measurement, as the shipped one.")
     _out_option(artificial, "X3P", "write the measurement to this file")
@@ -106,15 +107,18 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
     calibrate.add_argument("images", type=Path, nargs="+", metavar="PATH", help=images)
     renders = "render this many crops of each roughness (default: %(default)s)"
     calibrate.add_argument("--renders", type=int, default=5, help=renders)
-    calibrate.add_argument("--figure", type=Path, metavar="PNG", help="draw a figure to this file")
-    calibrate.add_argument("--out", type=Path, metavar="TOML", help="write a recipe file with the roughness")
+    calibrate.add_argument("--figure", type=output_path, metavar="PNG", help="draw a figure to this file")
+    calibrate.add_argument(
+        "--out", type=output_path, metavar="TOML", help="write a recipe file with the roughness"
+    )
     _recipe_options(calibrate, "paper")
     _off_option(calibrate)
     return parser
 
 
 def _out_option(parser: argparse.ArgumentParser, kind: str, text: str) -> None:
-    parser.add_argument("--out", type=Path, required=True, metavar=kind, help=text)
+    kind_of_path = Path if kind == "DIR" else output_path
+    parser.add_argument("--out", type=kind_of_path, required=True, metavar=kind, help=text)
 
 
 def _recipe_options(parser: argparse.ArgumentParser, default: str, *other: str) -> None:

@@ -25,6 +25,7 @@ from deploy.demo.ports import free_ports
 from deploy.demo.station import SERIAL, running, shipped_parts, station_toml
 from deploy.demo.summary import DemoPart, Judged, count, print_part, summarise, write_json
 from station.errors import LineError, WeldgateError
+from station.files.destination import find_destination, output_path, standard_output_free
 from station.files.installation import room_command
 from station.plc.simulated.line import SimulatedLine
 from synth.camera.feed import Feed
@@ -49,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--parts", type=int, default=24, metavar="N", help="number of parts (default: %(default)s)"
     )
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON")
+    parser.add_argument("--json", type=output_path, metavar="FILE", help="write the results as JSON")
     parser.add_argument(
         "--records",
         type=Path,
@@ -74,11 +75,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
         parser.error("--parts must be at least 1")
-    if arguments.json is not None and not arguments.json.resolve().parent.is_dir():
+    try:
+        if arguments.json is not None:
+            find_destination(arguments.json).check()
+    except FileNotFoundError:
         parser.error(f"--json {arguments.json}: the folder does not exist")
+    except OSError as error:
+        parser.error(f"--json {arguments.json}: cannot be written ({error.strerror})")
     try:
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-        return _run(arguments, Console())
+        with standard_output_free([arguments.json]):
+            return _run(arguments, Console())
     except (WeldgateError, SynthError, OSError) as error:
         print(f"weldgate-demo: {error}", file=sys.stderr)
         return 2

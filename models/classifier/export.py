@@ -5,7 +5,7 @@ A file is kept only if it answers as the network does.
 
 import copy
 import json
-import os
+import shutil
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +24,7 @@ from models.errors import LearningError
 from station.classify.onnx import CLASSES, Classifier
 from station.classify.thresholds import Thresholds
 from station.domain import SEGMENT_PX
+from station.files.durable import replacing
 
 AnyNetwork = TypeVar("AnyNetwork", bound=nn.Module)
 
@@ -190,4 +191,6 @@ def keep(part: Path, path: Path, gap: float) -> None:
     if not gap <= TOLERANCE:
         part.unlink()
         raise LearningError(f"{path}: the exported file differs from the network by {gap:.2g}; nothing kept")
-    os.replace(part, path)
+    with replacing(path) as whole:
+        shutil.copyfile(part, whole)
+    part.unlink()

@@ -5,7 +5,7 @@ The only file that imports onnxruntime's quantizer.
 
 import contextlib
 import io
-import os
+import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +27,7 @@ from models.errors import LearningError
 from models.evaluation.measures import count, rejected
 from models.evaluation.scores import class_scores
 from station.classify.onnx import Classifier
+from station.files.durable import write_whole
 
 CALIBRATION_CROPS = 400
 LOSS_F2 = 0.003
@@ -59,8 +60,8 @@ def quantize(path: Path, target: Path, training: Crops, held_out: Crops) -> Quan
     Raises LearningError if it judges the held-out crops worse than the float32 file by more than 0.3 % of F2;
     nothing is kept then.
     """
-    prepared, part = target.with_suffix(".prepared.onnx"), target.with_suffix(".part.onnx")
-    try:
+    with tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
+        prepared, part = Path(folder) / "prepared.onnx", Path(folder) / "part.onnx"
         quant_pre_process(str(path), str(prepared), skip_symbolic_shape=True)
         with contextlib.redirect_stdout(io.StringIO()):  # it prints its progress
             quantize_static(
@@ -82,10 +83,7 @@ def quantize(path: Path, target: Path, training: Crops, held_out: Crops) -> Quan
         if found.int8 < found.float32 - LOSS_F2:
             fall = f"F2 falls from {found.float32:.4f} to {found.int8:.4f} in 8 bits"
             raise LearningError(f"{target}: {fall}; nothing kept. Use the float32 file")
-        os.replace(part, target)
-    finally:
-        for path_left in (prepared, part):
-            path_left.unlink(missing_ok=True)
+        write_whole(target, part.read_bytes())
     return found
 
 

@@ -15,6 +15,7 @@ from station.archive.reader import Listed
 from station.defects import KINDS, DefectKind, kind_of
 from station.domain import SEGMENTS
 from station.errors import ImageError, LocateError, RecordError
+from station.files.destination import find_destination
 from station.files.durable import replacing
 from station.files.image import encode_png, read_image
 from station.journal.reviews import Opinion, reviews
@@ -43,7 +44,10 @@ def export(
     `form` is one of `station.analysis.forms.FORMATS`. An export of crops calls `keep_going` before each part;
     if it returns False, everything that was written is deleted. Raises RecordError, OSError.
     """
-    if target.exists():
+    destination = find_destination(target)
+    if form in ("dataset", "reviewed") and destination.descriptor is not None:
+        raise RecordError(f"{target}: crops are written into a folder; name one")
+    if destination.status is not None and (destination.is_kept or form in ("dataset", "reviewed")):
         raise RecordError(f"{target}: already exists; name another file or folder")
     good, bad = [], []
     for entry in entries:

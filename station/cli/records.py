@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from station.analysis.forms import FORMATS
 from station.errors import RecordError
+from station.files.destination import find_destination, output_path
 
 if TYPE_CHECKING:
     from station.archive.reader import Query, Row
@@ -46,7 +47,10 @@ def add_commands(records: argparse.ArgumentParser) -> None:
     prune.add_argument("--dry-run", action="store_true", help="print what would be deleted, delete nothing")
     export = add("export", _export, "export records as a table, as Q-DAS file or as crops for training")
     export.add_argument(
-        "target", type=Path, metavar="TARGET", help="file to write, or folder for dataset and reviewed"
+        "target",
+        type=output_path,
+        metavar="TARGET",
+        help="file to write, - for standard output, or folder for dataset and reviewed",
     )
     export.add_argument(
         "--format",
@@ -62,7 +66,10 @@ def add_commands(records: argparse.ArgumentParser) -> None:
         "report", _report, "write a report with yield, findings by angle, trends, NOK parts and provenance"
     )
     report.add_argument(
-        "target", type=Path, metavar="FILE", help="file to write: .html (self-contained) or .pdf"
+        "target",
+        type=output_path,
+        metavar="FILE",
+        help="file to write: .html (self-contained) or .pdf; - for HTML on standard output",
     )
     report.add_argument("--title", default="weldgate: report", help="title (default: %(default)s)")
     report.add_argument(
@@ -180,8 +187,7 @@ def _export(arguments: argparse.Namespace) -> int:
     from station.analysis.export import export
     from station.archive.reader import read_records
 
-    if not arguments.target.resolve().parent.is_dir():
-        raise RecordError(f"{arguments.target}: the folder does not exist; name a file in an existing folder")
+    _check_target(arguments.target, is_folder=arguments.format in ("dataset", "reviewed"))
     bad = 0
     for path, problem in export(
         read_records(arguments.folder, _query(arguments)),
@@ -195,14 +201,29 @@ def _export(arguments: argparse.Namespace) -> int:
     return 1 if bad else 0
 
 
+def _check_target(target: Path, *, is_folder: bool = False) -> None:
+    """Raise RecordError if an output cannot be written, before records are read for it."""
+    destination = find_destination(target)
+    if is_folder and destination.status is not None:
+        return
+    try:
+        destination.check()
+    except FileNotFoundError:
+        raise RecordError(f"{target}: the folder does not exist; name a file in an existing folder") from None
+    except OSError as error:
+        raise RecordError(
+            f"{target}: cannot be written ({error.strerror}); name a file in an existing folder"
+        ) from None
+
+
 def _report(arguments: argparse.Namespace) -> int:
     from station.analysis.report.page import report
     from station.analysis.report.pdf import write_pdf
     from station.analysis.truth import read_truth
     from station.archive.reader import read_records
+    from station.files.durable import write_whole
 
-    if not arguments.target.resolve().parent.is_dir() or arguments.target.is_dir():
-        raise RecordError(f"{arguments.target}: cannot be written; name a file in an existing folder")
+    _check_target(arguments.target)
     found = read_records(arguments.folder, _query(arguments))
     entries = sorted(found, key=lambda entry: entry.row.inspection_id)
     truth = None if arguments.truth is None else read_truth(arguments.truth)
@@ -210,7 +231,7 @@ def _report(arguments: argparse.Namespace) -> int:
     if arguments.target.suffix.lower() == ".pdf":
         write_pdf(page, arguments.target)
     else:
-        arguments.target.write_text(page, encoding="utf-8")
+        write_whole(arguments.target, page.encode("utf-8", "backslashreplace"))
     print(arguments.target)
     return 1 if any(entry.problem is not None for entry in entries) else 0
 

@@ -11,6 +11,7 @@ from rich.progress import track
 from station.analysis.truth import read_truth
 from station.domain import Verdict
 from station.errors import SettingsError
+from station.files.destination import Destination, find_destination
 from station.inspection.loading import load_inspector
 from station.replay.compare import compare
 from station.replay.files import sources
@@ -34,10 +35,12 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
     if not 1 <= processes <= 256:
         raise SettingsError(f"the number of processes must be 1 to 256: --processes {processes}")
     truth = None if arguments.truth is None else read_truth(arguments.truth)
-    for target in (arguments.json, arguments.csv):
-        if target is not None and (target.is_dir() or not os.access(target.resolve().parent, os.W_OK)):
-            raise SettingsError(f"results cannot be written: {target}. Name a file in a writable folder")
-    part = None if arguments.json is None else arguments.json.with_name(arguments.json.name + ".part")
+    outputs = [_writable(target) for target in (arguments.json, arguments.csv) if target is not None]
+    if len(outputs) == 2 and outputs[0] == outputs[1]:
+        raise SettingsError(f"--json and --csv name the same output: {arguments.csv}. Name another one")
+    part = None
+    if arguments.json is not None and outputs[0].is_replaceable:
+        part = outputs[0].path.with_name(outputs[0].path.name + ".part")
     judge = load_inspector(settings)
     judged = replay(images, settings, judge=judge, processes=processes, part=part)
     silent = not sys.stderr.isatty()
@@ -82,6 +85,18 @@ def run_replay(arguments: argparse.Namespace, shipped: Path) -> int:
         )
         print(page)
     return 1 if bad else 0
+
+
+def _writable(target: Path) -> Destination:
+    """Return where an output goes. Raises SettingsError if it cannot be written."""
+    try:
+        destination = find_destination(target)
+        destination.check()
+    except OSError:
+        raise SettingsError(
+            f"results cannot be written: {target}. Name a file in a writable folder"
+        ) from None
+    return destination
 
 
 def _settings(arguments: argparse.Namespace, shipped: Path) -> Settings:

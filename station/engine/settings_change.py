@@ -172,16 +172,16 @@ def stage_changes(settings: Path, changes: Mapping[str, object]) -> tuple[Path, 
         return SettingsError(f"{path}: cannot be written ({error.strerror}); nothing was changed")
 
     try:
-        temporary = stage(path, json.dumps(changes, indent=1, sort_keys=True).encode())
+        temporary, target = stage(path, json.dumps(changes, indent=1, sort_keys=True).encode())
     except OSError as error:
         raise not_written(error) from None
 
     def replace_file() -> None:
         try:
-            temporary.replace(path)
+            temporary.replace(target)
         except OSError as error:
             raise not_written(error) from None
         with suppress(OSError):  # the new file is complete and in place either way
-            sync_folder(path.parent)
+            sync_folder(target.parent)
 
     return temporary, replace_file

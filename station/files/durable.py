@@ -1,9 +1,12 @@
 """Writes files atomically: a file has its whole content, or it does not exist."""
 
 import os
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from station.files.destination import find_destination
 
 PART = ".new.part"
 """Suffix of a file while it is being written."""
@@ -11,15 +14,26 @@ PART = ".new.part"
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary path next to `path`; the file written there replaces `path` at the end.
+    """Yield a temporary path; the file written there takes the place of `path` at the end.
 
-    After an error the temporary file is deleted, and `path` is unchanged. Raises OSError.
+    A regular file is replaced with its mode and owner kept, where links lead. Devices, FIFOs and open
+    descriptors are written to. After an error the temporary file is deleted, and `path` is unchanged. Raises
+    OSError.
     """
-    part = path.with_name(path.name + PART)
+    destination = find_destination(path)
+    destination.check()
+    if not destination.is_replaceable:
+        with tempfile.TemporaryDirectory(prefix="weldgate-") as folder:
+            part = Path(folder) / "output.part"
+            yield part
+            destination.fill(part)
+        return
+    part = destination.path.with_name(destination.path.name + PART)
     part.unlink(missing_ok=True)
     try:
         yield part
-        part.replace(path)
+        destination.give_mode_and_owner(part)
+        part.replace(destination.path)
     except BaseException:
         with suppress(OSError):
             part.unlink(missing_ok=True)
@@ -27,7 +41,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def write_whole(path: Path, data: bytes, *, durable: bool = False) -> None:
-    """Write a file atomically. Raises OSError.
+    """Write a file atomically, like `replacing`. Raises OSError.
 
     With `durable`, the content is on disk when this returns; `sync_folder` does the same for the name.
     """
@@ -38,17 +52,20 @@ def write_whole(path: Path, data: bytes, *, durable: bool = False) -> None:
             os.fsync(file.fileno())
 
 
-def stage(path: Path, data: bytes) -> Path:
-    """Write a file durably under a temporary name and return its path, ready to be renamed to `path`.
+def stage(path: Path, data: bytes) -> tuple[Path, Path]:
+    """Write a file durably under a temporary name, ready to be renamed to `path`.
 
-    Raises OSError.
+    Return the temporary path and the path that it has to replace, where links lead. Raises OSError.
     """
-    part = path.with_name(path.name + PART)
+    destination = find_destination(path)
+    destination.check()
+    part = destination.path.with_name(destination.path.name + PART)
     with part.open("wb") as file:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
-    return part
+    destination.give_mode_and_owner(part)
+    return part, destination.path
 
 
 def sync_folder(folder: Path) -> None:

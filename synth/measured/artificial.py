@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from station.files.durable import replacing
 from synth.part.streams import Stream, stream
 
 STEP_UM = 3.0
@@ -103,7 +104,10 @@ def write_x3p(path: Path, height_um: Array, valid: NDArray[np.bool_], *, step_um
         "bindata/valid.bin": mask,
         "md5checksum.hex": f"{_md5(record.encode()).lower()} *main.xml\n".encode(),
     }
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+    with (
+        replacing(path) as part,
+        zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive,
+    ):
         for name, content in members.items():
             archive.writestr(zipfile.ZipInfo(name, (2026, 11, 22, 0, 0, 0)), content, zipfile.ZIP_DEFLATED, 9)
 

@@ -1,11 +1,13 @@
 """Figures of a measurement and of a calibration (paper, Figs. 4, 5, 7); only this file imports matplotlib."""
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from station.files.durable import write_whole
 from synth.errors import SynthError
 from synth.measured.measurement import Measurement
 from synth.measured.spectrum import WeldModel, shift_rows, synthesize
@@ -80,7 +82,9 @@ def _title(axes: Any, title: str, x: str, y: str) -> None:
 
 
 def _save(figure: Figure, out: Path) -> None:
+    content = BytesIO()
     try:
-        figure.savefig(out, dpi=110)
+        figure.savefig(content, format=out.suffix[1:] or "png", dpi=110)
+        write_whole(out, content.getvalue())
     except (OSError, ValueError) as error:
         raise SynthError(f"{out}: the figure could not be written: {error}") from None

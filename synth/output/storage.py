@@ -26,7 +26,7 @@ def write_text(path: Path, text: str) -> None:
 
 def write_image(path: Path, image: NDArray) -> None:  # type: ignore[type-arg]
     """Write an image in the format of the path's suffix."""
-    write_bytes(path, encode(path.suffix, image))
+    write_bytes(path, encode(path.suffix or ".png", image))
 
 
 def encode(suffix: str, image: NDArray) -> bytes:  # type: ignore[type-arg]

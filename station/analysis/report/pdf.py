@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from station.errors import RecordError
+from station.files.durable import replacing
 
 
 def write_pdf(page: str, target: Path) -> None:
@@ -24,4 +25,5 @@ def write_pdf(page: str, target: Path) -> None:
             f"PDF needs the system library Pango ({reason}); install libpango-1.0-0, "
             "or print the HTML page in a browser"
         ) from None
-    HTML(string=page).write_pdf(target)
+    with replacing(target) as part:
+        HTML(string=page).write_pdf(part)

@@ -12,6 +12,7 @@ from station.archive.reader import Query, find, read_records, read_words
 from station.archive.schema import NAME as INDEX
 from station.channel.requests import Answer, ResetCounts
 from station.domain import Verdict
+from station.files.durable import write_whole
 from station.journal.users import Level
 from station.panel.look.words import data, translate
 from station.panel.pages.page import Page
@@ -214,7 +215,8 @@ class StatisticsPage(Page):
                 if not progress(count, limit):
                     return None
                 entries.append(entry)
-            target.write_text(report(entries[::-1], folder, "weldgate"), encoding="utf-8")
+            page = report(entries[::-1], folder, "weldgate")
+            write_whole(target, page.encode("utf-8", "backslashreplace"))
             return str(target)
 
         self._work.start(translate("statistics", "Writing the report"), work, self._message.setText)
