@@ -12,7 +12,7 @@ from pathlib import Path
 from station.archive.schema import NAME
 from station.errors import RecordError
 from station.files.durable import sync_folder
-from station.files.sqlite import CHAIN_START
+from station.files.sqlite import CHAIN_START, connect_to_write, patiently, writing
 from station.settings.model import KeepSettings
 
 log = logging.getLogger("weldgate.archive")
@@ -50,7 +50,7 @@ def prune(
     if not (folder / NAME).is_file():
         raise RecordError(f"{folder}: no records found ({NAME} is missing); name an archive folder")
     try:
-        with closing(sqlite3.connect(folder / NAME, timeout=5.0, isolation_level=None)) as index:
+        with closing(connect_to_write(folder / NAME)) as index:
             newest = index.execute("SELECT MAX(grabbed_at) FROM records").fetchone()[0]
             if newest is None or now - datetime.fromisoformat(newest) > STRANGE:
                 return Pruned()
@@ -175,14 +175,14 @@ class _Work:
         return done
 
     def _begin(self) -> None:
-        self._index.execute("BEGIN" if self._dry else "BEGIN IMMEDIATE")
+        patiently(lambda: self._index.execute("BEGIN" if self._dry else "BEGIN IMMEDIATE"))
 
     def _commit(self, names: list[str]) -> None:
         if self._dry:
             self._index.execute("ROLLBACK")
             return
         self._index.executemany("INSERT INTO to_remove VALUES (?)", [(name,) for name in names])
-        self._index.execute("COMMIT")
+        patiently(lambda: self._index.execute("COMMIT"))
         for name in names:
             self._remove(name)
 
@@ -192,7 +192,8 @@ class _Work:
         if path.parent.is_dir() and path.parent != self._folder and not any(path.parent.iterdir()):
             path.parent.rmdir()
             sync_folder(self._folder)
-        self._index.execute("DELETE FROM to_remove WHERE name = ?", (name,))
+        with writing(self._index, self._folder / NAME):
+            self._index.execute("DELETE FROM to_remove WHERE name = ?", (name,))
 
 
 def _size(path: Path) -> int:

@@ -10,7 +10,7 @@ import sqlite3
 from pathlib import Path
 
 from station.errors import RecordError
-from station.files.sqlite import CHAIN_START, PATIENCE_S, connect_to_read, use_wal
+from station.files.sqlite import CHAIN_START, connect_to_read, connect_to_write, writing
 
 NAME = "index.sqlite"
 """File name of the index."""
@@ -71,7 +71,7 @@ def open_index(folder: Path) -> sqlite3.Connection:
 
     Raises sqlite3.Error, or RecordError if the index has a later version.
     """
-    connection = sqlite3.connect(folder / NAME, timeout=PATIENCE_S, check_same_thread=False)
+    connection = connect_to_write(folder / NAME, any_thread=True)
     try:
         version = connection.execute("PRAGMA user_version").fetchone()[0]
         if version > VERSION:
@@ -79,9 +79,7 @@ def open_index(folder: Path) -> sqlite3.Connection:
                 f"{folder}: the index has version {version}, this software writes version {VERSION}; "
                 "update weldgate, or set another archive.folder"
             )
-        use_wal(connection)
-        with connection:  # readers see the whole upgrade or nothing of it
-            connection.execute("BEGIN IMMEDIATE")
+        with writing(connection, folder / NAME):  # readers see the whole upgrade or nothing of it
             present = {row[1] for row in connection.execute("PRAGMA table_info(records)")}
             for name, kind in ADDED.items():
                 if present and name not in present:

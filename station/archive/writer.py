@@ -9,12 +9,13 @@ from datetime import datetime
 from pathlib import Path
 
 from station.archive.room import Disk, Room
-from station.archive.schema import SEARCHABLE_SCORE, last_link, link, open_index
+from station.archive.schema import NAME, SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
 from station.errors import ImageError, RecordError
 from station.files.durable import sync_folder, write_whole
 from station.files.image import encode_png
 from station.files.lock import hold
+from station.files.sqlite import writing
 from station.records import Part, Provenance, Record, to_json
 from station.settings.model import ArchiveSettings
 
@@ -117,8 +118,8 @@ class Archive:
         try:
             write_whole(self._folder / "trial", b"", durable=True)
             (self._folder / "trial").unlink()
-            self._index.execute("BEGIN IMMEDIATE")
-            self._index.rollback()
+            with writing(self._index, self._folder / NAME):
+                pass
         except (OSError, sqlite3.Error):
             self._failed_s = time.monotonic()
             return False
@@ -145,15 +146,13 @@ class Archive:
         try:
             return self._commit(pending, inspection, part, provenance, now=now)
         except (OSError, sqlite3.Error, ImageError, ValueError) as error:
-            if self._index.in_transaction:
-                self._index.rollback()
             self._failed_s = time.monotonic()
             raise RecordError(f"{self._folder}: the record could not be written: {error}") from None
 
     def mark_shown(self, inspection_id: int, shown: bool) -> None:
         """Note in the index whether the verdict was shown to the PLC. Raises RecordError."""
         try:
-            with self._index:
+            with writing(self._index, self._folder / NAME):
                 self._index.execute(
                     "UPDATE records SET shown_to_plc = ? WHERE inspection_id = ?", (shown, inspection_id)
                 )
@@ -228,7 +227,7 @@ class Archive:
             "chain": chain,
             "frame_state": frame_state,
         }
-        with self._index:
+        with writing(self._index, self._folder / NAME):
             marks = ", ".join(f":{name}" for name in values)
             self._index.execute(f"INSERT INTO records ({', '.join(values)}) VALUES ({marks})", values)
             self._index.executemany("INSERT INTO segments VALUES (?, ?, ?)", found)

@@ -1,5 +1,10 @@
 """Locks between processes; the only file that imports filelock."""
 
+import os
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,3 +27,81 @@ def hold(path: Path) -> "BaseFileLock":
     except Timeout:
         raise BlockingIOError(f"{path}: held by another process") from None
     return lock
+
+
+@contextmanager
+def turn(path: Path, patience_s: float) -> Iterator[None]:
+    """Wait for the turn among the processes and threads that use this lock file, and hold it.
+
+    The kernel wakes those who wait, so that each gets its turn; who asks from time to time may never find the
+    lock free. Raises BlockingIOError after `patience_s`, OSError if the file cannot be locked.
+    """
+    handle = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0), 0o666)
+    waiting = _Waiting(handle)
+    try:
+        if not waiting.lock(patience_s):
+            raise BlockingIOError(11, "another process is writing", str(path))
+        yield
+    finally:
+        waiting.close()
+
+
+class _Waiting:
+    """A handle that is locked, or closed as soon as it can be."""
+
+    def __init__(self, handle: int) -> None:
+        self._handle, self._given_up = handle, False
+        self._decision = threading.Lock()
+        self._done = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def lock(self, patience_s: float) -> bool:
+        """Return whether the handle was locked in time. Raises OSError."""
+        until_s = time.monotonic() + patience_s
+        if _try_lock(self._handle):
+            return True
+        if os.name != "posix":
+            while time.monotonic() < until_s:
+                time.sleep(0.005)
+                if _try_lock(self._handle):
+                    return True
+            return False
+        self._thread = threading.Thread(target=self._wait, name="turn", daemon=True)
+        self._thread.start()
+        return self._done.wait(patience_s)
+
+    def close(self) -> None:
+        """Give the lock free; if it is still waited for, as soon as it is there."""
+        with self._decision:
+            if self._thread is not None and not self._done.is_set():
+                self._given_up = True
+                return
+        os.close(self._handle)
+
+    def _wait(self) -> None:
+        import fcntl
+
+        with suppress(OSError):
+            fcntl.flock(self._handle, fcntl.LOCK_EX)
+        with self._decision:
+            self._done.set()
+            if self._given_up:
+                os.close(self._handle)
+
+
+def _try_lock(handle: int) -> bool:
+    if os.name == "posix":
+        import fcntl
+
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        return True
+    import msvcrt
+
+    try:
+        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+    except OSError:
+        return False
+    return True

@@ -6,13 +6,12 @@ Each entry is chained to the previous one by its hash. This module reads; only `
 import hashlib
 import sqlite3
 from collections.abc import Collection, Iterator
-from contextlib import closing
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
 from station.errors import RecordError
-from station.files.sqlite import CHAIN_START, connect_to_read
+from station.files.sqlite import CHAIN_START, read_rows
 
 NAME = "journal.sqlite"
 """Name of the file in the archive."""
@@ -104,11 +103,7 @@ def _rows(folder: Path, query: str, values: list[str]) -> list[dict[str, str]]:
     if not path.exists():
         return []
     try:
-        with closing(connect_to_read(path)) as connection:
-            connection.row_factory = sqlite3.Row
-            if connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None:
-                return []  # its writer was killed before the first entry
-            return [dict(row) for row in connection.execute(query, values)]
+        return [dict(row) for row in read_rows(path, query, values)]
     except sqlite3.Error as error:
         raise RecordError(f"{path}: cannot be read ({error})") from None
 

@@ -1,20 +1,13 @@
 """Writes the journal; used by the engine only, windows send requests to the engine."""
 
 import sqlite3
-from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
 
 from station.errors import RecordError
-from station.files.sqlite import CHAIN_START, use_wal
+from station.files.sqlite import CHAIN_START, opened_for_writing
 from station.journal.journal import COLUMNS, NAME, Entry, Kind, link_entry
 
-PATIENCE_S = 5.0
-"""Time for which other processes are waited for.
-
-SQLite is not fair: of several that write without a pause on a busy machine, one may well wait for two
-seconds.
-"""
 SCHEMA = (
     """CREATE TABLE IF NOT EXISTS entries (
     number INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -51,9 +44,7 @@ def append(
         reason=reason,
     )
     try:
-        with closing(sqlite3.connect(folder / NAME, timeout=PATIENCE_S, isolation_level=None)) as connection:
-            use_wal(connection)
-            connection.execute("BEGIN IMMEDIATE")
+        with opened_for_writing(folder / NAME) as connection:
             for statement in SCHEMA:
                 connection.execute(statement)
             last = connection.execute("SELECT chain FROM entries ORDER BY number DESC LIMIT 1").fetchone()
@@ -63,7 +54,6 @@ def append(
             connection.execute(
                 f"INSERT INTO entries ({', '.join(COLUMNS)}, chain) VALUES ({marks})", [*values, chain]
             )
-            connection.execute("COMMIT")
     except sqlite3.Error as error:
         raise RecordError(f"{folder / NAME}: cannot be written ({error}); nothing was changed") from None
     return entry

@@ -21,7 +21,7 @@ from station.engine.orders import Order, OrderQueue, Reload, Ticket, UseSettings
 from station.engine.settings_change import DIFFERENT_IN_FILE, NO_MOMENT, NOT_IN_FILE, SettingsChange
 from station.engine.settings_use import CAMERA_REFUSES, use_settings
 from station.errors import ModelError, SettingsError
-from station.files.sqlite import use_wal
+from station.files.sqlite import connect_to_write
 from station.inspection.loading import Loaded, prepare
 from station.journal.journal import Kind, entries
 from station.settings import adjustments
@@ -291,13 +291,14 @@ def files_left_open() -> Iterator[None]:
 def no_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
     """Wait neither for the disk nor for the maker of a journal without tables, who is dead."""
 
-    def quick_wal(connection: sqlite3.Connection) -> None:
-        use_wal(connection)
+    def quick(path: Path, *, any_thread: bool = False) -> sqlite3.Connection:
+        connection = connect_to_write(path, any_thread=any_thread)
         connection.execute("PRAGMA synchronous = OFF")
+        return connection
 
     monkeypatch.setattr("os.fsync", lambda _file: None)
     monkeypatch.setattr("station.files.sqlite.PATIENCE_S", 0.0)
-    monkeypatch.setattr("station.journal.journal_writer.use_wal", quick_wal)
+    monkeypatch.setattr("station.files.sqlite.connect_to_write", quick)
 
 
 @pytest.mark.usefixtures("files_left_open", "no_waiting")
