@@ -7,6 +7,7 @@ from pathlib import Path
 from models.errors import LearningError
 from station.defects import KINDS as DEFECT_KINDS
 from station.files.destination import output_path
+from station.numbers import whole_option
 
 SHIPPED = Path(__file__).resolve().parent / "shipped"
 """Folder of the shipped networks and their cards."""
@@ -67,13 +68,15 @@ def _train(train: argparse.ArgumentParser) -> None:
     _run_options(train)
     train.add_argument(
         "--seeds",
-        type=int,
+        type=whole_option,
         nargs="+",
         default=[0],
         metavar="N",
         help="make one run for each seed; more than one: each in a folder of its own",
     )
-    train.add_argument("--steps", type=int, metavar="N", help="number of batches of 64 (default: 5000)")
+    train.add_argument(
+        "--steps", type=whole_option, metavar="N", help="number of batches of 64 (default: 5000)"
+    )
     train.add_argument(
         "--kinds",
         nargs="+",
@@ -94,14 +97,18 @@ def _fine_tune(fine: argparse.ArgumentParser) -> None:
     _run_options(fine)
     _model(fine, "classifier to begin with (default: the shipped one)")
     fine.add_argument("--from-nothing", action="store_true", help="train a new network on these images alone")
-    fine.add_argument("--seed", type=int, default=0, help="seed of split and training (default: %(default)s)")
+    fine.add_argument(
+        "--seed", type=whole_option, default=0, help="seed of split and training (default: %(default)s)"
+    )
 
 
 def _train_ring(ring: argparse.ArgumentParser) -> None:
     _ring_lots(ring)
     _run_options(ring)
-    ring.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")
-    ring.add_argument("--steps", type=int, metavar="N", help="number of batches of 8 (default: 9000)")
+    ring.add_argument("--seed", type=whole_option, default=0, help="seed of the run (default: %(default)s)")
+    ring.add_argument(
+        "--steps", type=whole_option, metavar="N", help="number of batches of 8 (default: 9000)"
+    )
     ring.add_argument(
         "--leave-out",
         nargs="+",
@@ -132,9 +139,13 @@ def _train_seen(seen: argparse.ArgumentParser) -> None:
     help_of_lots = "folders of labelled frames at 13 µm/px, made by weldgate-synth pictures or part"
     seen.add_argument("lots", type=Path, nargs="+", metavar="LOT", help=help_of_lots)
     _run_options(seen)
-    seen.add_argument("--seed", type=int, default=0, help="seed of the run (default: %(default)s)")
+    seen.add_argument("--seed", type=whole_option, default=0, help="seed of the run (default: %(default)s)")
     seen.add_argument(
-        "--steps", type=int, default=3000, metavar="N", help="number of batches (default: %(default)s)"
+        "--steps",
+        type=whole_option,
+        default=3000,
+        metavar="N",
+        help="number of batches (default: %(default)s)",
     )
     not_shown = "do not show these covers in training, and judge by them"
     seen.add_argument("--leave-out", nargs="+", default=[], metavar="COVER", help=not_shown)

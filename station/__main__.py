@@ -17,6 +17,7 @@ from station.cli.records import add_commands
 from station.errors import WeldgateError
 from station.files.destination import output_path, standard_output_free
 from station.files.installation import SHIPPED_NETWORKS, room_command
+from station.numbers import number_option, whole_option
 
 SETTINGS = Path("station.toml")
 """Settings file that is used unless -c names another one."""
@@ -81,19 +82,19 @@ def _parser() -> argparse.ArgumentParser:
         help="read settings from this file (default: use the shipped networks and the default limits)",
     )
     replay.add_argument(
-        "--recipe", type=int, default=1, metavar="N", help="use this recipe (default: %(default)s)"
+        "--recipe", type=whole_option, default=1, metavar="N", help="use this recipe (default: %(default)s)"
     )
     replay.add_argument(
         "--model", type=Path, metavar="FILE", help="use this classifier instead of the configured one"
     )
     replay.add_argument(
         "--um-per-px",
-        type=float,
+        type=number_option,
         metavar="UM",
         help="set the scale of the images in µm per pixel, 9 to 65 (default: the scale in the settings)",
     )
     replay.add_argument(
-        "--processes", type=int, metavar="N", help="use this many processes (default: one per core)"
+        "--processes", type=whole_option, metavar="N", help="use this many processes (default: one per core)"
     )
     replay.add_argument(
         "--json",
@@ -150,7 +151,7 @@ def _parser() -> argparse.ArgumentParser:
         "--host", default="127.0.0.1", help="name or address of the server (default: %(default)s)"
     )
     certificates.add_argument(
-        "--days", type=int, default=90, metavar="N", help="days of validity (default: %(default)s)"
+        "--days", type=whole_option, default=90, metavar="N", help="days of validity (default: %(default)s)"
     )
     return parser
 

@@ -100,4 +100,4 @@ def from_json(text: bytes) -> Record:
             text = json.dumps(upgraded(raw)).encode()
     except (ValueError, KeyError, TypeError, AttributeError):
         pass  # not a record: the adapter says what is wrong with it
-    return _ADAPTER.validate_json(text)
+    return _ADAPTER.validate_json(text, strict=True)

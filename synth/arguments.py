@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from station.files.destination import output_path
+from station.numbers import number_option, whole_option
 from synth.part.switches import Switch
 from synth.recipes.named import LINE, RECIPES
 
@@ -52,12 +53,14 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
     each = (
         "make this many crops: half of them OK, the kinds of defect in equal numbers (default: %(default)s)"
     )
-    dataset.add_argument("--count", type=int, default=5000, help=each)
+    dataset.add_argument("--count", type=whole_option, default=5000, help=each)
     straight = "render the paper's straight pieces instead of rings cut as the station cuts them"
     dataset.add_argument("--flat", action="store_true", help=straight)
     dataset.add_argument("--heights", action="store_true", help="write height maps as well")
     processes = "render in this many processes (default: %(default)s)"
-    dataset.add_argument("--workers", type=int, default=os.cpu_count() or 1, metavar="N", help=processes)
+    dataset.add_argument(
+        "--workers", type=whole_option, default=os.cpu_count() or 1, metavar="N", help=processes
+    )
     dataset.add_argument(
         "--scheduler", metavar="ADDRESS", help="render on this Dask cluster, started with --preload weldgate"
     )
@@ -66,7 +69,9 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
 
     part = add("part", "Render whole parts as camera frames: a lot.", epilog=RECIPE_FILE)
     _out_option(part, "DIR", "write into this folder; a killed run continues where it stopped")
-    part.add_argument("--count", type=int, default=1, help="render this many parts (default: %(default)s)")
+    part.add_argument(
+        "--count", type=whole_option, default=1, help="render this many parts (default: %(default)s)"
+    )
     window = "render only the window round the ring: faster, and enough for training"
     part.add_argument("--ring-only", action="store_true", help=window)
     strips = "write the unwrapped strips as well, and masks of frames and strips"
@@ -76,14 +81,20 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
 
     pictures = add("pictures", "Draw welds of many kinds without ray tracing: a lot.")
     _out_option(pictures, "DIR", "write into this folder; a killed run continues where it stopped")
-    pictures.add_argument("--count", type=int, default=1000, help="draw this many (default: %(default)s)")
+    pictures.add_argument(
+        "--count", type=whole_option, default=1000, help="draw this many (default: %(default)s)"
+    )
     use = (
         "ring: rings of any size at 52 um/px; plugs: those of turned plugs; crops: the line's at 13 um/px "
         "(default: %(default)s)"
     )
     pictures.add_argument("--use", choices=("ring", "plugs", "crops"), default="ring", help=use)
-    pictures.add_argument("--seed", type=int, default=0, help="draw with this seed: same seed, same pictures")
-    pictures.add_argument("--workers", type=int, default=os.cpu_count() or 1, metavar="N", help=processes)
+    pictures.add_argument(
+        "--seed", type=whole_option, default=0, help="draw with this seed: same seed, same pictures"
+    )
+    pictures.add_argument(
+        "--workers", type=whole_option, default=os.cpu_count() or 1, metavar="N", help=processes
+    )
 
     sheet = add("sheet", "Make a contact sheet of a dataset, or of the switches.", epilog=RECIPE_FILE)
     of_switches = "show this dataset; without it, the same crops with each switch off in turn"
@@ -94,19 +105,21 @@ def make_parser(commands: Mapping[str, Command]) -> argparse.ArgumentParser:
     measurement = add("measurement", "Analyse a 3D surface measurement of a weld.")
     read = "read this x3p, opd, sur, … or npy file (default: the shipped one)"
     measurement.add_argument("file", type=Path, nargs="?", metavar="FILE", help=read)
-    measurement.add_argument("--step-um", type=float, metavar="UM", help="state the step of an npy file")
+    measurement.add_argument(
+        "--step-um", type=number_option, metavar="UM", help="state the step of an npy file"
+    )
     measurement.add_argument("--figure", type=output_path, metavar="PNG", help="draw a figure to this file")
 
     artificial = add("artificial", "Make an artificial surface measurement, as the shipped one.")
     _out_option(artificial, "X3P", "write the measurement to this file")
     seed = "make the measurement of this seed (default: %(default)s, that of the shipped one)"
-    artificial.add_argument("--seed", type=int, default=1, help=seed)
+    artificial.add_argument("--seed", type=whole_option, default=1, help=seed)
 
     calibrate = add("calibrate", "Find the roughness of weld and partners in images.", epilog=RECIPE_FILE)
     images = "compare with these crops or strips of OK welds, 128 px high, or with folders of them"
     calibrate.add_argument("images", type=Path, nargs="+", metavar="PATH", help=images)
     renders = "render this many crops of each roughness (default: %(default)s)"
-    calibrate.add_argument("--renders", type=int, default=5, help=renders)
+    calibrate.add_argument("--renders", type=whole_option, default=5, help=renders)
     calibrate.add_argument("--figure", type=output_path, metavar="PNG", help="draw a figure to this file")
     calibrate.add_argument(
         "--out", type=output_path, metavar="TOML", help="write a recipe file with the roughness"
@@ -125,7 +138,7 @@ def _recipe_options(parser: argparse.ArgumentParser, default: str, *other: str) 
     add, names = parser.add_argument, sorted(RECIPES)
     add(
         "--seed",
-        type=int,
+        type=whole_option,
         default=0,
         help="draw with this seed: same seed, same bytes (default: %(default)s)",
     )
@@ -137,7 +150,7 @@ def _recipe_options(parser: argparse.ArgumentParser, default: str, *other: str) 
         metavar="FILE",
         help="use this 3D measurement of an OK weld, not the shipped one",
     )
-    add("--step-um", type=float, metavar="UM", help="state the step of an npy measurement")
+    add("--step-um", type=number_option, metavar="UM", help="state the step of an npy measurement")
 
 
 def _off_option(parser: argparse.ArgumentParser) -> None:

@@ -17,6 +17,7 @@ from rich.table import Table
 from deploy.chaos.judge import Judge, judged
 from deploy.demo.ports import free_ports
 from station.errors import WeldgateError
+from station.numbers import whole_option
 from station.plc.line import make_line
 from station.plc.map.registers import STATUS_START, STATUS_WORDS, Control, Status, VerdictCode
 from station.plc.port import Result, Trigger
@@ -89,7 +90,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--parts",
-        type=int,
+        type=whole_option,
         default=500,
         metavar="N",
         help="number of parts, each without and with more clients (default: %(default)s)",

@@ -14,6 +14,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from station.numbers import whole_option
 from synth.camera.frames import piece_crops, piece_window
 from synth.camera.optics import Optics
 from synth.camera.render import mitsuba_scene, render, start
@@ -39,7 +40,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="bench-render", description="Compare the speed of the generator with a plain Mitsuba script."
     )
     parser.add_argument(
-        "--rounds", type=int, default=3, metavar="N", help="number of measurements (default: %(default)s)"
+        "--rounds",
+        type=whole_option,
+        default=3,
+        metavar="N",
+        help="number of measurements (default: %(default)s)",
     )
     arguments = parser.parse_args(argv)
     if arguments.rounds < 1:

@@ -25,6 +25,7 @@ from station.errors import WeldgateError
 from station.files.image import read_image
 from station.files.installation import SHIPPED_NETWORKS
 from station.inspection.loading import prepare
+from station.numbers import whole_option
 from station.plc.line import make_line
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.settings.model import Settings
@@ -38,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         description="Measure each step from trigger to RESULT_VALID, with the emulated camera.",
     )
     parser.add_argument(
-        "--parts", type=int, default=100, metavar="N", help="number of parts (default: %(default)s)"
+        "--parts", type=whole_option, default=100, metavar="N", help="number of parts (default: %(default)s)"
     )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:

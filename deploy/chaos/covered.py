@@ -21,6 +21,7 @@ from station.domain import SEGMENT_DEG, Inspection, Ring, Verdict
 from station.errors import WeldgateError
 from station.inspection.inspector import Inspector
 from station.inspection.loading import load_inspector
+from station.numbers import whole_option
 from station.settings.file import load
 from station.settings.model import for_images
 
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("lots", type=Path, nargs="+", metavar="LOT", help="labelled frames at 13 um/px")
     parser.add_argument("-c", "--settings", type=Path, metavar="FILE", help="judge with these settings")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=whole_option, default=0)
     own = parser.parse_args(arguments)
     try:
         settings = for_images(NETWORKS) if own.settings is None else load(own.settings)

@@ -25,6 +25,7 @@ from deploy.demo.ports import free_ports
 from deploy.demo.station import running, shipped_parts, station_toml
 from station.archive.reader import find
 from station.files.image import read_image
+from station.numbers import whole_option
 from station.plc.map.registers import VerdictCode
 from station.plc.simulated.line import SimulatedLine
 from synth.camera.feed import Feed
@@ -109,10 +110,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="chaos-panel", description="Kill, restart and suspend the window while parts pass."
     )
     parser.add_argument(
-        "--blocks", type=int, default=10, metavar="N", help="number of blocks per way (default: %(default)s)"
+        "--blocks",
+        type=whole_option,
+        default=10,
+        metavar="N",
+        help="number of blocks per way (default: %(default)s)",
     )
     parser.add_argument(
-        "--parts", type=int, default=20, metavar="N", help="number of parts per block (default: %(default)s)"
+        "--parts",
+        type=whole_option,
+        default=20,
+        metavar="N",
+        help="number of parts per block (default: %(default)s)",
     )
     arguments = parser.parse_args(argv)
     start = time.monotonic()

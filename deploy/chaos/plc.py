@@ -22,6 +22,7 @@ from deploy.chaos.judge import Judge, judged
 from deploy.demo.ports import free_ports
 from station.domain import SEGMENTS
 from station.errors import WeldgateError
+from station.numbers import whole_option
 from station.plc.line import make_line
 from station.plc.map.registers import VerdictCode
 from station.plc.port import Result, Trigger
@@ -180,13 +181,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--parts",
-        type=int,
+        type=whole_option,
         default=10_000,
         metavar="N",
         help="number of parts per mode (default: %(default)s)",
     )
     parser.add_argument(
-        "--seed", type=int, default=1, metavar="N", help="seed of verdicts and faults (default: %(default)s)"
+        "--seed",
+        type=whole_option,
+        default=1,
+        metavar="N",
+        help="seed of verdicts and faults (default: %(default)s)",
     )
     parser.add_argument(
         "--mode",

@@ -23,6 +23,7 @@ from station.archive.writer import Archive
 from station.classify.thresholds import Limit, Thresholds
 from station.defects import KINDS
 from station.domain import SEGMENTS, Frame, Inspection, Origin, Ring, SegmentScores, Verdict
+from station.numbers import whole_option
 from station.records import Part, Provenance
 from station.settings.model import ArchiveSettings
 
@@ -122,10 +123,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="chaos-records", description="Kill a writer of records at random moments and check the archive."
     )
     parser.add_argument(
-        "--kills", type=int, default=300, metavar="N", help="number of kills (default: %(default)s)"
+        "--kills", type=whole_option, default=300, metavar="N", help="number of kills (default: %(default)s)"
     )
     parser.add_argument(
-        "--seed", type=int, default=1, metavar="N", help="seed of the moments (default: %(default)s)"
+        "--seed", type=whole_option, default=1, metavar="N", help="seed of the moments (default: %(default)s)"
     )
     arguments = parser.parse_args(argv)
     if not hasattr(os, "fork"):

@@ -24,6 +24,7 @@ from station.channel.zeromq import Publisher
 from station.domain import Frame, Origin
 from station.files.image import read_image
 from station.inspection.loading import prepare
+from station.numbers import whole_option
 from station.panel.app import open_window
 from station.panel.pages.table import PAGES
 from station.panel.window import Window
@@ -181,7 +182,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--parts",
-        type=int,
+        type=whole_option,
         default=int(HOURS * 3600 / PACE_S),
         metavar="N",
         help="number of parts (default: %(default)s, which is eight hours)",

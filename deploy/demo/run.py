@@ -27,6 +27,7 @@ from deploy.demo.summary import DemoPart, Judged, count, print_part, summarise, 
 from station.errors import LineError, WeldgateError
 from station.files.destination import find_destination, output_path, standard_output_free
 from station.files.installation import room_command
+from station.numbers import number_option, whole_option
 from station.plc.simulated.line import SimulatedLine
 from synth.camera.feed import Feed
 from synth.errors import SynthError
@@ -48,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--headless", action="store_true", help="open no window, even if there is a display")
     parser.add_argument(
-        "--parts", type=int, default=24, metavar="N", help="number of parts (default: %(default)s)"
+        "--parts", type=whole_option, default=24, metavar="N", help="number of parts (default: %(default)s)"
     )
     parser.add_argument("--json", type=output_path, metavar="FILE", help="write the results as JSON")
     parser.add_argument(
@@ -60,14 +61,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--seed",
-        type=int,
+        type=whole_option,
         default=7,
         metavar="N",
         help="seed of the parts that are rendered in addition to the shipped frames (default: %(default)s)",
     )
     parser.add_argument(
         "--pace",
-        type=float,
+        type=number_option,
         default=0.0,
         metavar="S",
         help="seconds between parts (default: 2 with a window, no pause without)",

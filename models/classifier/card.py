@@ -70,7 +70,7 @@ def card_json(card: RunCard) -> str:
 def read_card(path: Path) -> RunCard:
     """Read a run.json. Raises LearningError."""
     try:
-        return TypeAdapter(RunCard).validate_json(path.read_bytes())
+        return TypeAdapter(RunCard).validate_json(path.read_bytes(), strict=True)
     except OSError as error:
         raise LearningError(
             f"{path}: cannot be read ({error.strerror}). Name the run.json of a training run"

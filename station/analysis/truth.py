@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from station.errors import RecordError
+from station.numbers import without_twins
 
 VERDICTS = ("OK", "NOK")
 """Verdicts that a truth can have."""
@@ -74,7 +75,10 @@ def read_truth(path: Path) -> dict[str, str]:
 
 
 def _of_json(text: str) -> list[tuple[str, str]]:
-    return [(str(name), str(verdict)) for name, verdict in json.loads(text).items()]
+    return [
+        (str(name), str(verdict))
+        for name, verdict in json.loads(text, object_pairs_hook=without_twins).items()
+    ]
 
 
 def _of_csv(text: str) -> list[tuple[str, str]]:

@@ -7,10 +7,11 @@ that is too old is refused: its sender has already seen that there was no answer
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from station.journal.reviews import Marks, Opinion
 from station.journal.users import Level
+from station.numbers import Number, not_bool
 
 TOO_OLD = "the request came too late: nothing was done"
 """Refusal of a request that is too old."""
@@ -23,8 +24,6 @@ Name = Annotated[str, Field(max_length=100)]
 """A name of limited length."""
 Text = Annotated[str, Field(max_length=1000)]
 """A text of limited length."""
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-"""A finite number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +57,7 @@ class SaveUser:
     """Request to add a user, or to change the level and PIN of a user."""
 
     name: Name
-    level: Level
+    level: Annotated[Level, BeforeValidator(not_bool)]
     pin: Annotated[str, Field(max_length=20)] = field(repr=False)
     type: Literal["save user"] = "save user"
 

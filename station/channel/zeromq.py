@@ -102,7 +102,7 @@ class Subscriber:
         found: list[Event] = []
         while (raw := self._receive(self._events)) is not None:
             try:
-                found.append(_EVENTS.validate_json(raw))
+                found.append(_EVENTS.validate_json(raw, strict=True))
             except ValidationError:
                 continue
         return found
@@ -111,7 +111,7 @@ class Subscriber:
         """Return the newest preview; None if there is no new one."""
         raw = self._receive(self._previews)
         try:
-            return None if raw is None else _PREVIEW.validate_json(raw)
+            return None if raw is None else _PREVIEW.validate_json(raw, strict=True)
         except ValidationError:
             return None
 
@@ -153,7 +153,7 @@ class RequestServer:
                 break
             with suppress(ValidationError):
                 if len(frames) == 2:
-                    found.append((frames[0], _MESSAGE.validate_json(frames[1])))
+                    found.append((frames[0], _MESSAGE.validate_json(frames[1], strict=True)))
         return found
 
     def answer(self, sender: bytes, answer: Answer) -> None:
@@ -199,7 +199,7 @@ class RequestClient:
             except zmq.Again:
                 return found
             with suppress(ValidationError):
-                found.append(_ANSWER.validate_json(raw))
+                found.append(_ANSWER.validate_json(raw, strict=True))
 
     def close(self) -> None:
         """Close the socket after the last request was sent."""

@@ -81,7 +81,7 @@ def read_reference(path: Path, model_hash: str, size: int) -> Reference:
     """
     action = "make a new one with weldgate-models first-day --reference"
     try:
-        reference = _ADAPTER.validate_json(path.read_bytes())
+        reference = _ADAPTER.validate_json(path.read_bytes(), strict=True)
     except OSError as error:
         raise ModelError(f"{path}: reference cannot be read ({error.strerror}); {action}") from None
     except ValidationError:

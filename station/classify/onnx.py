@@ -5,7 +5,6 @@ and is refused without them; a ring network is recognised by its input.
 """
 
 import hashlib
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,12 +12,14 @@ from typing import Any
 import numpy as np
 import onnxruntime as ort
 from numpy.typing import NDArray
+from pydantic import TypeAdapter
 
 from station.classify.extent import CELLS
 from station.classify.thresholds import Limit, Thresholds
 from station.defects import KINDS, DefectKind, kind_named
 from station.domain import SEGMENT_PX, Image, SegmentScores
 from station.errors import ModelError
+from station.numbers import Number
 from station.vision.marks import CELL_PX, CHANNELS, Marks
 from station.vision.reduced import FINDER_UM_PER_PX
 
@@ -36,6 +37,9 @@ SEEN_COLUMNS = 16
 """Columns of a crop for which the network says how much of the weld is hidden."""
 PADDING_PX = 16
 """Pixels of which the ring network takes whole multiples along each side."""
+_CLASSES: TypeAdapter[list[str]] = TypeAdapter(list[str])
+_NUMBERS: TypeAdapter[dict[str, float]] = TypeAdapter(dict[str, Number])
+_NUMBER: TypeAdapter[float] = TypeAdapter(float)
 METADATA_KEYS = (
     "weldgate.classes",
     "weldgate.thresholds",
@@ -236,12 +240,10 @@ def _card(path: Path, network: Network) -> ModelCard:
             f"{path}: output {', '.join(sorted(lacking))} is missing; make a model with weldgate-models train"
         )
     try:
-        classes = [str(name) for name in json.loads(metadata["weldgate.classes"])]
-        thresholds = {
-            str(name): float(value) for name, value in json.loads(metadata["weldgate.thresholds"]).items()
-        }
-        limit = float(json.loads(metadata["weldgate.novelty_limit"]))
-    except (ValueError, AttributeError, TypeError):
+        classes = _CLASSES.validate_json(metadata["weldgate.classes"], strict=True)
+        thresholds = _NUMBERS.validate_json(metadata["weldgate.thresholds"], strict=True)
+        limit = _NUMBER.validate_json(metadata["weldgate.novelty_limit"], strict=True)
+    except ValueError:
         raise ModelError(
             f"{path}: metadata cannot be read; make the model again with weldgate-models train"
         ) from None

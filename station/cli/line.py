@@ -7,6 +7,8 @@ import argparse
 from collections.abc import Sequence
 from typing import Any
 
+from station.numbers import number_option, whole_option
+
 
 def add_line_options(line: argparse.ArgumentParser) -> None:
     """Add the options of `weldgate line` to its parser."""
@@ -23,18 +25,18 @@ def add_line_options(line: argparse.ArgumentParser) -> None:
     )
     line.add_argument(
         "--port",
-        type=int,
+        type=whole_option,
         choices=range(1, 65536),
         default=1502,
         metavar="PORT",
         help="TCP port (default: %(default)s)",
     )
     line.add_argument(
-        "--parts", type=int, default=24, metavar="N", help="number of parts (default: %(default)s)"
+        "--parts", type=whole_option, default=24, metavar="N", help="number of parts (default: %(default)s)"
     )
     line.add_argument(
         "--pace",
-        type=float,
+        type=number_option,
         default=0.0,
         metavar="S",
         help="seconds between parts (default: no pause)",
@@ -52,7 +54,7 @@ def add_line_options(line: argparse.ArgumentParser) -> None:
     line.add_argument("--knob", dest="fault", nargs="+", default=argparse.SUPPRESS, help=argparse.SUPPRESS)
     line.add_argument("--list-faults", action=_ListFaults, help="print the names of all faults and exit")
     line.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="seed of the faults (default: %(default)s)"
+        "--seed", type=whole_option, default=0, metavar="N", help="seed of the faults (default: %(default)s)"
     )
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from station.analysis.forms import FORMATS
 from station.errors import RecordError
 from station.files.destination import find_destination, output_path
+from station.numbers import number_option, whole_option
 
 if TYPE_CHECKING:
     from station.archive.reader import Query, Row
@@ -95,18 +96,18 @@ def _search_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--reason", metavar="NAME", help="reason as the list prints it")
     parser.add_argument(
         "--segment",
-        type=int,
+        type=whole_option,
         choices=range(1, 22),
         metavar="N",
         help="segment, 1 to 21, whose score is at least --score",
     )
     parser.add_argument(
         "--score",
-        type=float,
+        type=number_option,
         metavar="P",
         help="minimum score of NOK, 0.05 or higher, of --segment or else of the worst segment",
     )
-    parser.add_argument("--last", type=int, metavar="N", help="the newest N records only")
+    parser.add_argument("--last", type=whole_option, metavar="N", help="the newest N records only")
 
 
 def _time(text: str) -> datetime:
@@ -122,6 +123,10 @@ def _time(text: str) -> datetime:
 def _query(arguments: argparse.Namespace) -> "Query":
     from station.archive.reader import Query
 
+    if arguments.last is not None and arguments.last < 1:
+        raise RecordError(f"--last is {arguments.last}; 1 or more is needed")
+    if arguments.score is not None and not 0 <= arguments.score <= 1:
+        raise RecordError(f"--score is {arguments.score:g}; 0 to 1 is allowed")
     any_score = arguments.segment is not None and arguments.score is None
     return Query(
         serial=arguments.serial,

@@ -66,7 +66,7 @@ class _Waiting:
                 if _try_lock(self._handle):
                     return True
             return False
-        self._thread = threading.Thread(target=self._wait, name="turn", daemon=True)
+        self._thread = threading.Thread(target=self._wait, daemon=True)
         self._thread.start()
         return self._done.wait(patience_s)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from station.errors import SettingsError
+from station.numbers import without_twins
 from station.settings.model import merged
 from station.settings.renamed import with_new_names
 
@@ -29,7 +30,7 @@ def read(settings: Path) -> dict[str, Any]:
     """
     path = path_of(settings)
     try:
-        changes = json.loads(path.read_text())
+        changes = json.loads(path.read_text(), object_pairs_hook=without_twins)
     except FileNotFoundError:
         return {}
     except (OSError, ValueError) as error:

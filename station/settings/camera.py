@@ -1,12 +1,11 @@
 """The section [camera]: one class per make of camera; `make_camera` makes the camera from it."""
 
-from pathlib import Path
 from typing import Literal
 
 from pydantic import Field
 
 from station.domain import Origin
-from station.settings.section import Section
+from station.settings.section import FilePath, Section
 
 
 class CameraSettings(Section):
@@ -77,7 +76,7 @@ class ReplaySettings(CameraSettings):
     """Settings of a folder of recorded images, which are used once each in the order of their names."""
 
     kind: Literal["replay"]
-    folder: Path
+    folder: FilePath
     reconnect_s: float = Field(default=1.0, ge=0.05, le=60)
 
     @property

@@ -1,23 +1,23 @@
 """The sections and values of station.toml, with their defaults and allowed ranges."""
 
 from collections.abc import Mapping
-from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network
+from ipaddress import IPv4Address
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationError, model_validator
 
 from station.defects import kind_named
 from station.domain import NETWORK_UM_PER_PX, TRAINED_UM_PER_PX
 from station.errors import SettingsError
+from station.numbers import number_key
 from station.register_windows import COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS
+from station.settings.address import Loopback, Networks, Port
 from station.settings.camera import AnyCamera, ReplaySettings
 from station.settings.quality import Fraction
 from station.settings.quality import QualitySettings as QualitySettings
-from station.settings.section import Section
+from station.settings.section import FilePath, Section
 
-Port = Annotated[int, Field(ge=1, le=65535)]
-"""TCP port."""
 KindName = Annotated[str, AfterValidator(lambda name: kind_named(name).name)]
 """Name of a known kind of defect."""
 
@@ -52,14 +52,14 @@ class LimitSettings(Section):
 class ModelSettings(Section):
     """Network files, self-test, and limits of the decision."""
 
-    path: Path = Path("weldgate.onnx")
-    ring_path: Path = Path("ring.onnx")
-    seen_path: Path = Path("seen.onnx")
+    path: FilePath = Path("weldgate.onnx")
+    ring_path: FilePath = Path("ring.onnx")
+    seen_path: FilePath = Path("seen.onnx")
     """Network that says how much of the weld is hidden in a crop."""
-    reference_path: Path | None = None
+    reference_path: FilePath | None = None
     """File with the appearance of the line's own good parts; None: drift is not monitored."""
     threads: int = Field(default=2, ge=1, le=64)
-    self_test_path: Path | None = None
+    self_test_path: FilePath | None = None
     """Frame of the self-test, judged at the start and while idle; its scores must never change."""
     self_test_verdict: Literal["OK", "NOK"] | None = None
     """Verdict that the self-test must give at the start."""
@@ -71,7 +71,8 @@ class ModelSettings(Section):
     limits: dict[KindName, LimitSettings] = Field(default_factory=dict)
     """Limits by name of the kind of defect."""
     segment_thresholds: dict[
-        Annotated[int, Field(ge=1, le=21)], Annotated[float, Field(ge=0.01, le=0.99)]
+        Annotated[int, BeforeValidator(number_key), Field(ge=1, le=21)],
+        Annotated[float, Field(ge=0.01, le=0.99)],
     ] = Field(default_factory=dict)
     """Thresholds of single segments, which apply to all kinds of defect."""
 
@@ -85,9 +86,9 @@ class ModelSettings(Section):
 class TlsSettings(Section):
     """Certificates for Modbus/TCP Security; `weldgate certificates` makes some for tests."""
 
-    certificate_path: Path
-    key_path: Path
-    ca_path: Path
+    certificate_path: FilePath
+    key_path: FilePath
+    ca_path: FilePath
     """Certificate of the authority whose certificates are trusted."""
 
 
@@ -128,7 +129,7 @@ class PlcSettings(Section):
     """Time allowed for the response to one request (client)."""
     low_word_first: bool = False
     """True if 32-bit values start with their low word; the test pattern shows whether that is right."""
-    allow: tuple[IPv4Network | IPv6Network, ...] = ()
+    allow: Networks = ()
     """Networks from which peers can connect (server); empty: all."""
     writer_idle_ms: int = Field(default=2_000, ge=100, le=600_000)
     """Time without a write after which another peer can take over the right to write (server)."""
@@ -169,14 +170,14 @@ class KeepSettings(Section):
     error_days: Days = 365
     record_days: Days = 3650
     """Retention of the records themselves."""
-    quota_gib: float = Field(default=500.0, gt=0, allow_inf_nan=False)
+    quota_gib: float = Field(default=500.0, gt=0)
     """Maximum size of all frames; above it the oldest OK frames are deleted first, then ERROR, then NOK."""
 
 
 class ArchiveSettings(Section):
     """Folder of the records, and what happens when the disk fills up."""
 
-    folder: Path = Path("records")
+    folder: FilePath = Path("records")
     warn_free_mb: int = Field(default=10_000, ge=1)
     """Free space below which the station warns."""
     thin_free_mb: int = Field(default=2_000, ge=1)
@@ -196,19 +197,13 @@ class ArchiveSettings(Section):
         return self
 
 
-def _loopback(address: IPv4Address | IPv6Address) -> IPv4Address | IPv6Address:
-    if not address.is_loopback:
-        raise ValueError("must be a loopback address of this machine, such as 127.0.0.1")
-    return address
-
-
 class ChannelSettings(Section):
     """Local channel between engine and window (ZeroMQ).
 
     It has no encryption and carries times of this machine's clock, so only loopback addresses are allowed.
     """
 
-    host: Annotated[IPv4Address | IPv6Address, AfterValidator(_loopback)] = IPv4Address("127.0.0.1")
+    host: Loopback = IPv4Address("127.0.0.1")
     events_port: Port = 15551
     preview_port: Port = 15552
     requests_port: Port = 15553
@@ -235,7 +230,9 @@ class Settings(Section):
     channel: ChannelSettings = ChannelSettings()
     golden: GoldenSettings = GoldenSettings()
     panel: PanelSettings = PanelSettings()
-    recipes: dict[Annotated[int, Field(ge=1, le=65535)], RecipeSettings] = Field(default_factory=dict)
+    recipes: dict[Annotated[int, BeforeValidator(number_key), Field(ge=1, le=65535)], RecipeSettings] = Field(
+        default_factory=dict
+    )
     """Recipes by number; recipe 1 uses the sections unchanged unless it is listed here."""
 
 

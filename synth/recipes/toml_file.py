@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
+from pydantic_core import to_json
 
 from synth.errors import SynthError
 from synth.part.ranges import Weight
@@ -116,7 +117,8 @@ def _group(name: str, base: Any, table: Any) -> Any:
 
 def _checked(checker: TypeAdapter[Any], value: Any, name: str, known: str) -> Any:
     try:
-        return checker.validate_python(value)
+        text = to_json(value, inf_nan_mode="constants")  # a TOML list is a range, as a JSON list is
+        return checker.validate_json(text, strict=True)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join([name, *(str(part) for part in first["loc"])])

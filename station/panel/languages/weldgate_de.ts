@@ -780,6 +780,10 @@
         <source>allowed: </source>
         <translation>erlaubt: </translation>
     </message>
+    <message>
+        <source>allowed, each segment once: </source>
+        <translation>erlaubt, jedes Segment einmal: </translation>
+    </message>
 </context>
 <context>
     <name>history</name>

@@ -4,6 +4,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QGridLayout, QLineEdit, QWidget
 
 from station.domain import SEGMENTS
+from station.numbers import number, numbered
 from station.panel.look.words import translate
 from station.panel.widgets.card import label
 
@@ -35,10 +36,10 @@ class NumberField(QWidget):
     def value(self) -> float | None:
         """Number in the field, or None if it is not a number in the range."""
         try:
-            number = float(self.edit.text().replace(",", "."))
+            value = number(self.edit.text())
         except ValueError:
             return None
-        return number if self._low <= number <= self._high else None
+        return value if self._low <= value <= self._high else None
 
     @property
     def problem(self) -> str:
@@ -79,24 +80,23 @@ class SegmentLimits(QWidget):
     @property
     def value(self) -> dict[int, float] | None:
         """Thresholds by number of the segment, 1 to 21, or None if the text is not valid."""
-        found: dict[int, float] = {}
-        for part in filter(None, (text.strip() for text in self.edit.text().replace(";", ",").split(","))):
-            number, _, limit = part.partition(":")
-            try:
-                found[int(number)] = float(limit)
-            except ValueError:
-                return None
-        return found if all(_allowed(number, limit) for number, limit in found.items()) else None
+        try:
+            found = numbered(self.edit.text())
+        except ValueError:
+            return None
+        return found if all(_allowed(segment, limit) for segment, limit in found.items()) else None
 
     def set(self, limits: dict[int, float]) -> None:
         """Put thresholds into the field."""
         self.edit.setText(", ".join(f"{number}: {limit:g}" for number, limit in sorted(limits.items())))
 
     def _on_changed(self) -> None:
-        self._note.setText(translate("field", "allowed: ") + f"1 … {SEGMENTS}: {LOW:g} … {HIGH:g}")
+        self._note.setText(
+            translate("field", "allowed, each segment once: ") + f"1 … {SEGMENTS}: {LOW:g} … {HIGH:g}"
+        )
         self._note.setVisible(self.value is None)
         self.changed.emit()
 
 
-def _allowed(number: int, limit: float) -> bool:
-    return 1 <= number <= SEGMENTS and LOW <= limit <= HIGH
+def _allowed(segment: int, limit: float) -> bool:
+    return 1 <= segment <= SEGMENTS and LOW <= limit <= HIGH
