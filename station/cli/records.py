@@ -7,6 +7,7 @@ import argparse
 import sys
 from collections.abc import Callable
 from datetime import UTC, datetime
+from getpass import getuser
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -46,6 +47,18 @@ def add_commands(records: argparse.ArgumentParser) -> None:
         help="settings file with the retention (default: %(default)s)",
     )
     prune.add_argument("--dry-run", action="store_true", help="print what would be deleted, delete nothing")
+    clock = add("clock", _clock, "list the jumps of the clock, or say which dates at a jump are right")
+    clock.add_argument(
+        "--record",
+        type=whole_option,
+        metavar="N",
+        help="the first record after the jump, if there are several",
+    )
+    clock.add_argument(
+        "--right",
+        choices=("before", "after", "both"),
+        help="which dates are right: before the jump, after it, or both (the line paused)",
+    )
     export = add("export", _export, "export records as a table, as Q-DAS file or as crops for training")
     export.add_argument(
         "target",
@@ -178,14 +191,51 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 
 def _prune(arguments: argparse.Namespace) -> int:
-    from station.archive.prune import prune
+    from station.engine.retention import prune_archive
     from station.settings.file import load
 
     keep = load(arguments.settings).archive.keep
-    done = prune(arguments.folder, keep, datetime.now(UTC), dry=arguments.dry_run)
+    done = prune_archive(arguments.folder, keep, who=_user(), dry=arguments.dry_run)
+    if done.doubt:
+        print(
+            f"weldgate: {arguments.folder}: nothing is deleted for its age: {done.doubt}. "
+            "Say which dates are right: weldgate records clock",
+            file=sys.stderr,
+        )
     verb = "would delete" if arguments.dry_run else "deleted"
     print(f"{verb} {done.frames} frames, {done.records} records, {done.bytes / 1e6:.1f} MB")
-    return 0
+    return 1 if done.doubt else 0
+
+
+def _user() -> str:
+    """Return the name of the user of the system who runs the command."""
+    try:
+        return getuser()
+    except (KeyError, OSError, ImportError):
+        return "unknown user"
+
+
+def _clock(arguments: argparse.Namespace) -> int:
+    from station.archive.age import Right, undecided
+    from station.archive.prune import find_jumps
+    from station.engine.retention import decide, read_clock
+
+    clock = read_clock(arguments.folder)
+    found = find_jumps(arguments.folder, clock)
+    if arguments.right is not None:
+        chosen = [jump for jump in found if arguments.record in (None, jump.number)]
+        if len(chosen) != 1:
+            numbers = ", ".join(str(jump.number) for jump in found) or "none"
+            raise RecordError(
+                f"{arguments.folder}: name one jump with --record; records after a jump: {numbers}"
+            )
+        decide(arguments.folder, chosen[0].number, Right(arguments.right), who=_user())
+        clock = read_clock(arguments.folder)
+    for jump in found:
+        print(f"{jump}  {clock.decisions.get(jump.number, 'in doubt')}")
+    left = undecided(found, clock)
+    print(f"{len(found)} jumps, {len(left)} in doubt")
+    return 1 if left else 0
 
 
 def _export(arguments: argparse.Namespace) -> int:

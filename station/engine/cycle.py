@@ -45,8 +45,10 @@ class Cycle:
         self_checks: SelfChecks,
         listener: Listener,
         alarm_log: AlarmLog,
+        clock_in_doubt: Callable[[], bool] = lambda: False,
     ) -> None:
         """`origin`: origin of the camera's frames; `loaded`: the recipe to start with."""
+        self._clock_in_doubt = clock_in_doubt
         self._camera = camera
         self._line = line
         self._archive = archive
@@ -183,6 +185,7 @@ class Cycle:
             masters_due=checks.masters_due,
             drifting=checks.drifting,
             settings_refused=self._settings_refused,
+            clock_in_doubt=self._clock_in_doubt(),
             service=self._orders.service.who,
             order_waiting=self._orders.waiting,
             bit=self._orders.service.bit,

@@ -21,6 +21,8 @@ class StationState:
     masters_due: bool
     drifting: bool
     settings_refused: bool
+    clock_in_doubt: bool
+    """True if nothing is deleted for its age because the clock may be wrong."""
     service: str
     """User in service mode, or empty."""
     order_waiting: bool
@@ -42,6 +44,7 @@ def alarms(state: StationState) -> tuple[Alarm, ...]:
         (Alarm.SETTINGS_REFUSED, state.settings_refused),
         (Alarm.MASTERS_DUE, state.masters_due),
         (Alarm.PICTURES_DRIFT, state.drifting),
+        (Alarm.CLOCK_IN_DOUBT, state.clock_in_doubt),
         (Alarm.DISK_FILLS, state.can_write and state.room is not Room.ENOUGH),
     )
     return tuple(alarm for alarm, active in conditions if active)

@@ -10,7 +10,6 @@ from pathlib import Path
 from types import FrameType
 from typing import TypeVar
 
-from station.archive.prune import Housekeeping
 from station.archive.reader import Query, find
 from station.archive.writer import Archive
 from station.camera.choose import make_camera
@@ -24,6 +23,7 @@ from station.engine.cycle import Cycle
 from station.engine.listener import Listener
 from station.engine.operator_requests import OperatorRequests
 from station.engine.orders import OrderQueue
+from station.engine.retention import Housekeeping
 from station.engine.self_checks import Master, SelfChecks
 from station.errors import WeldgateError
 from station.inspection.loading import Loaded, prepare
@@ -48,6 +48,7 @@ def make_cycle(
     listener: Listener,
     alarm_log: AlarmLog,
     active: ActiveSettings | None = None,
+    clock_in_doubt: Callable[[], bool] = lambda: False,
 ) -> Cycle:
     """Return the cycle that the settings describe; `active`: active settings that others may change."""
     golden = settings.golden
@@ -69,6 +70,7 @@ def make_cycle(
         ),
         listener=listener,
         alarm_log=alarm_log,
+        clock_in_doubt=clock_in_doubt,
     )
 
 
@@ -115,8 +117,11 @@ def run_engine(path: Path) -> None:
             if archive
             else None
         )
+        keeper = None
         if archive:
-            stack.enter_context(closing(Housekeeping(settings.archive.folder, settings.archive.keep)))
+            keeper = stack.enter_context(
+                closing(Housekeeping(settings.archive.folder, settings.archive.keep))
+            )
         server = attempt(lambda: stack.enter_context(closing(RequestServer(settings.channel))))
         if (
             problems
@@ -154,5 +159,6 @@ def run_engine(path: Path) -> None:
             listener=Listener(on_event, publisher.show, orders.take),
             alarm_log=alarm_log,
             active=active,
+            clock_in_doubt=lambda: keeper is not None and keeper.clock_in_doubt,
         )
         cycle.run(stop)

@@ -32,6 +32,10 @@ class Kind(StrEnum):
     ALARM = "alarm"
     ALARM_OVER = "alarm over"
     ALARM_SEEN = "alarm acknowledged"
+    DELETED = "deleted"
+    """Frames or records that were deleted for their age or for lack of space."""
+    CLOCK = "clock"
+    """A jump of the clock, or what a person said about it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,13 +14,15 @@ import pytest
 
 from station.__main__ import main
 from station.analysis.forms import FORMATS
-from station.archive.prune import Housekeeping, prune, sampled
+from station.archive.prune import Pruned, sampled
+from station.archive.prune import prune as prune_noting
 from station.archive.reader import find, read_records, verify
 from station.archive.room import Room
 from station.archive.schema import VERSION
 from station.archive.writer import Archive
 from station.defects import Reason
 from station.domain import Frame, Image, Inspection, Origin
+from station.engine.retention import Housekeeping
 from station.errors import RecordError
 from station.files.image import read_image
 from station.records import Part
@@ -30,6 +32,10 @@ from tests.parts import label_with, nok_inspection, ok_inspection, provenance, u
 NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)
 ROOMY = {"min_free_mb": 1, "thin_free_mb": 1, "warn_free_mb": 1}
 KEEP = KeepSettings(ok_all_days=7, ok_share=0.25, ok_days=90, nok_days=730, error_days=365, record_days=1000)
+
+
+def prune(folder: Path, keep: KeepSettings, now: datetime, *, dry: bool = False) -> Pruned:
+    return prune_noting(folder, keep, now, note=lambda *_: None, dry=dry)
 
 
 def fill(folder: Path, count: int, days_apart: float = 1.0, image: Image | None = None) -> None:

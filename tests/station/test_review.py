@@ -252,6 +252,7 @@ STATES = st.builds(
     masters_due=BOOLS,
     drifting=BOOLS,
     settings_refused=BOOLS,
+    clock_in_doubt=BOOLS,
     service=st.sampled_from(["", "Ada"]),
     order_waiting=BOOLS,
     bit=st.just(0),
@@ -275,4 +276,5 @@ def test_the_station_is_ready_only_if_nothing_keeps_it_and_everything_that_lasts
         alarm in active for alarm in (Alarm.CAMERA_LOST, Alarm.ARCHIVE_FULL, Alarm.SELF_TEST_FAILED)
     )
     assert published.function_check == (Alarm.MASTER_WRONG in active or Alarm.MASTERS_DUE in active)
+    assert (Alarm.CLOCK_IN_DOUBT in active) == state.clock_in_doubt
     assert published.alarm == (int(active[0]) if active else 0)

@@ -414,6 +414,14 @@
         <translation>Alarm quittiert</translation>
     </message>
     <message>
+        <source>deleted</source>
+        <translation>gelöscht</translation>
+    </message>
+    <message>
+        <source>clock</source>
+        <translation>Uhr</translation>
+    </message>
+    <message>
         <source>right</source>
         <translation>richtig</translation>
     </message>
@@ -488,6 +496,14 @@
     <message>
         <source>see the engine&apos;s log; the previous settings stay active</source>
         <translation>siehe Protokoll der Engine; die bisherigen Einstellungen bleiben aktiv</translation>
+    </message>
+    <message>
+        <source>the clock jumped: no old records are deleted</source>
+        <translation>Uhr gesprungen: keine alten Aufzeichnungen werden gelöscht</translation>
+    </message>
+    <message>
+        <source>set the clock right, then say which dates are right: weldgate records clock</source>
+        <translation>Uhr richtig stellen, dann angeben, welche Zeiten stimmen: weldgate records clock</translation>
     </message>
     <message>
         <source>check the program of the line</source>

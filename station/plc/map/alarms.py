@@ -26,6 +26,7 @@ class Alarm(IntEnum):
     MASTERS_DUE = 0x3007
     PICTURES_DRIFT = 0x3008
     SETTINGS_REFUSED = 0x3009
+    CLOCK_IN_DOUBT = 0x300A
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,10 @@ TEXTS: dict[int, Explained] = {
     ),
     Alarm.SETTINGS_REFUSED: Explained(
         "changed settings could not be used", "see the engine's log; the previous settings stay active"
+    ),
+    Alarm.CLOCK_IN_DOUBT: Explained(
+        "the clock jumped: no old records are deleted",
+        "set the clock right, then say which dates are right: weldgate records clock",
     ),
     ERROR_DEADLINE: Explained(
         "no result within the deadline", "see cycle times on the page Statistics; check the PC's load"
