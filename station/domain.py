@@ -159,6 +159,10 @@ class Finding:
     """Width across the weld; None, like the area, if only whole segments are known to be defective."""
     area_mm2: float | None = None
 
+    def __post_init__(self) -> None:
+        if not -360 <= self.start_deg <= self.end_deg <= 1080:
+            raise ValueError(f"a finding from {self.start_deg} to {self.end_deg} degrees is not on a ring")
+
 
 @dataclass(frozen=True, slots=True)
 class Timing:
@@ -207,7 +211,7 @@ class Inspection:
             raise ValueError("OK needs a ring, 21 judged segments, all seen, none rejected, and no reason")
         if len(self.rejected) != len(self.scores):
             raise ValueError(f"{len(self.scores)} scores, but {len(self.rejected)} decisions on them")
-        for name in ("segment_quality", "unseen"):
+        for name in ("scores", "segment_quality", "unseen"):
             if len(getattr(self, name)) not in (0, SEGMENTS):
                 raise ValueError(f"{name} has {len(getattr(self, name))} entries, needed 0 or {SEGMENTS}")
 

@@ -8,6 +8,7 @@ any SQLite tool can read them.
 import json
 from dataclasses import dataclass, field
 from datetime import datetime
+from math import isfinite
 
 from pydantic import TypeAdapter
 
@@ -35,6 +36,10 @@ class Provenance:
     um_per_px: float = NETWORK_UM_PER_PX
     """Scale of the frame, at which its strip was cut. Older records lack it: their strips have rows of one
     frame pixel, whatever the scale was."""
+
+    def __post_init__(self) -> None:
+        if not self.um_per_px > 0:
+            raise ValueError(f"a scale of {self.um_per_px} µm/px is not above 0")
 
     @property
     def limits(self) -> str:
@@ -84,6 +89,15 @@ class Record:
         return self.inspection.verdict
 
 
+def _refuse(name: str) -> float:
+    raise ValueError(f"{name} is not a number")
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    return value if isfinite(value) else _refuse(text)
+
+
 _ADAPTER = TypeAdapter(Record)
 
 
@@ -93,11 +107,11 @@ def to_json(record: Record) -> bytes:
 
 
 def from_json(text: bytes) -> Record:
-    """Return the record in this JSON text of any version. Raises pydantic.ValidationError."""
+    """Return the record in this JSON text of any version. Raises ValueError, also for NaN and infinity."""
     try:
-        raw = json.loads(text)
+        raw = json.loads(text, parse_constant=_refuse, parse_float=_finite)
         if raw.get("format", 1) in OLD:
             text = json.dumps(upgraded(raw)).encode()
-    except (ValueError, KeyError, TypeError, AttributeError):
-        pass  # not a record: the adapter says what is wrong with it
+    except (KeyError, TypeError, AttributeError, IndexError, RecursionError) as error:
+        raise ValueError(f"not a record ({type(error).__name__})") from None
     return _ADAPTER.validate_json(text, strict=True)

@@ -1,7 +1,6 @@
 """Deletes frames and records after their retention, in small steps so that the engine never waits for it."""
 
 import hashlib
-import re
 import sqlite3
 import threading
 from collections.abc import Callable, Iterable
@@ -23,6 +22,7 @@ from station.archive.age import (
     trusted,
     undecided,
 )
+from station.archive.rows import FRAME_FILE, RECORD_FILE
 from station.archive.schema import NAME, read_index
 from station.errors import RecordError
 from station.files.durable import sync_folder
@@ -33,8 +33,6 @@ CLOCK = Clock()
 """Nothing is known about the clock but the dates themselves."""
 STEP = 200
 """Number of records in one transaction."""
-OWN_FILE = re.compile(r"\d{4}-\d\d-\d\d/\d{8,18}\.(png|json)", re.ASCII)
-"""Names of the files that may be deleted, whatever a damaged index says."""
 GIB = 1 << 30
 """Bytes in a GiB."""
 
@@ -105,7 +103,7 @@ def find_jumps(folder: Path, clock: Clock) -> list[Jump]:
     with closing(read_index(folder)) as index:
         try:
             return jumps(index, clock)
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeError) as error:
             raise RecordError(f"{folder}: the index cannot be read ({error})") from None
 
 
@@ -253,7 +251,7 @@ class _Work:
 
     def _remove(self, names: list[str]) -> None:
         """Delete files, and the folders of days that are empty then; no folder is listed for that."""
-        own = [name for name in names if OWN_FILE.fullmatch(name)]
+        own = [name for name in names if RECORD_FILE.fullmatch(name) or FRAME_FILE.fullmatch(name)]
         for name in own:
             (self._folder / name).unlink(missing_ok=True)
         emptied = False

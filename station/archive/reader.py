@@ -5,17 +5,20 @@ import sqlite3
 import time
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from datetime import datetime
 from pathlib import Path
 
-from pydantic import ValidationError
-
+from station.archive.rows import RECORD_FILE, as_row
+from station.archive.rows import Row as Row
 from station.archive.schema import link, read_index
 from station.errors import RecordError
+from station.files.regular import read_regular
 from station.files.sqlite import CHAIN_START
 from station.records import Record, from_json
 
+MAX_RECORD_BYTES, MAX_FRAME_BYTES = 16_000_000, 1_000_000_000
+"""Maximum size of a record and of a frame that is read."""
 WRITTEN_S = 1.0
 """Maximum time from the writing of a record's files to its row in the index."""
 
@@ -41,29 +44,6 @@ class Query:
     limit: int | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
-    """One row of the index."""
-
-    inspection_id: int
-    serial: str
-    trigger_id: int
-    grabbed_at: str
-    verdict: str
-    reason: str | None
-    worst_score: float | None
-    frame_file: str | None
-    frame_state: str
-    """kept, thinned (not stored for lack of space), pruned (deleted) or none (there was no frame)."""
-    record_file: str
-    record_sha256: str
-    shown_to_plc: bool | None
-    """True if the PLC could read the verdict; None if the station stopped before it could note this."""
-    purpose: str
-    recipe: int
-    chain: str | None
-
-
 @dataclass(frozen=True, slots=True)
 class Listed:
     """One entry of the index, with its record if it can be read, and its problem if it has one."""
@@ -86,24 +66,19 @@ def find(folder: Path, query: Query = Query()) -> list[Row]:
     where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
     order = " ORDER BY r.inspection_id" + (" DESC" if query.newest_first else "")
     limit = "" if query.limit is None else f" LIMIT {int(query.limit)}"
-    names = ", ".join(f"r.{name}" for name in Row.__slots__)
+    names = ", ".join(f"r.{field.name}" for field in fields(Row))
     join = " JOIN segments s ON s.inspection_id = r.inspection_id" if joined else ""
     with closing(read_index(folder)) as connection:
         try:
             rows = connection.execute(
                 f"SELECT {names} FROM records r{join}{where}{order}{limit}", values
             ).fetchall()
-        except sqlite3.Error as error:
+        except (sqlite3.Error, OverflowError, UnicodeError) as error:
             raise RecordError(f"{folder}: the index cannot be read ({error})") from None
-    return [
-        Row(
-            **{
-                **dict(row),
-                "shown_to_plc": None if row["shown_to_plc"] is None else bool(row["shown_to_plc"]),
-            }
-        )
-        for row in rows
-    ]
+    try:
+        return [as_row(dict(row)) for row in rows]
+    except RecordError as error:
+        raise RecordError(f"{folder}: {error}") from None
 
 
 def _conditions(query: Query) -> tuple[list[str], list[str | float]]:
@@ -146,14 +121,14 @@ def read_record(folder: Path, row: Row) -> tuple[Record | None, str | None]:
 def read_words(folder: Path, row: Row) -> tuple[Record | None, str | None]:
     """Return a record and None, or None and why it cannot be read; its frame is not checked."""
     try:
-        text = (folder / row.record_file).read_bytes()
+        text = read_regular(folder / row.record_file, MAX_RECORD_BYTES)
     except OSError as error:
         return None, f"cannot be read ({error.strerror})"
     if hashlib.sha256(text).hexdigest() != row.record_sha256:
         return None, "was modified after it was written"
     try:
         return from_json(text), None
-    except ValidationError:
+    except ValueError:
         return None, "is not a record of a known version"
 
 
@@ -161,7 +136,7 @@ def _frame_problem(folder: Path, row: Row, record: Record) -> str | None:
     if row.frame_file is None or row.frame_state != "kept":
         return None
     try:
-        png = (folder / row.frame_file).read_bytes()
+        png = read_regular(folder / row.frame_file, MAX_FRAME_BYTES)
     except OSError as error:
         return f"its frame {row.frame_file} cannot be read ({error.strerror})"
     return (
@@ -199,7 +174,7 @@ def verify(folder: Path) -> Iterator[tuple[str, str]]:
 
 def _being_written(folder: Path, path: Path, last: int) -> bool:
     """Return whether the engine is just writing this file: then it is in the index a moment later."""
-    if not path.stem.isdecimal() or int(path.stem) <= last:
+    if not RECORD_FILE.fullmatch(f"{path.parent.name}/{path.stem}.json") or int(path.stem) <= last:
         return False
     until = time.monotonic() + WRITTEN_S
     while not find(folder, Query(number=int(path.stem))):
@@ -240,6 +215,10 @@ def _last_pruned(folder: Path) -> tuple[str, int]:
             row = connection.execute(
                 "SELECT chain, inspection_id FROM let_go ORDER BY inspection_id DESC LIMIT 1"
             ).fetchone()
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeError) as error:
             raise RecordError(f"{folder}: the index cannot be read ({error})") from None
-    return (CHAIN_START, 0) if row is None else (row["chain"], row["inspection_id"])
+    if row is None:
+        return CHAIN_START, 0
+    if not (isinstance(row["chain"], str) and isinstance(row["inspection_id"], int)):
+        raise RecordError(f"{folder}: the index is damaged: table let_go")
+    return row["chain"], row["inspection_id"]

@@ -104,7 +104,7 @@ def read_index(folder: Path) -> sqlite3.Connection:
     try:
         connection = connect_to_read(path)
         version = connection.execute("PRAGMA user_version").fetchone()[0]
-    except sqlite3.Error as error:
+    except (sqlite3.Error, UnicodeError) as error:
         raise RecordError(f"{path}: not a readable index ({error})") from None
     if version != VERSION:
         connection.close()

@@ -67,7 +67,7 @@ class Archive:
             self._index = open_index(self._folder)
             self._chain = last_link(self._index)
             self._guard()
-        except (OSError, sqlite3.Error, RecordError) as error:
+        except (OSError, sqlite3.Error, UnicodeError, RecordError) as error:
             if hasattr(self, "_index"):
                 self._index.close()
             self._lock.release()

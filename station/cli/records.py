@@ -179,13 +179,13 @@ def _line(row: "Row") -> str:
 
 def _verify(arguments: argparse.Namespace) -> int:
     from station.archive.reader import find, verify
-    from station.journal.journal import entries, verify_journal
+    from station.journal.journal import count_entries, verify_journal
 
     bad = 0
     for name, problem in chain(verify(arguments.folder), verify_journal(arguments.folder)):
         bad += 1
         print(f"weldgate: {arguments.folder}: {name}: {problem}", file=sys.stderr)
-    records, journal = len(find(arguments.folder)), len(entries(arguments.folder))
+    records, journal = len(find(arguments.folder)), count_entries(arguments.folder)
     print(f"{records} records, {journal} journal entries, {bad} problems")
     return 1 if bad else 0
 

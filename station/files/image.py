@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from station.domain import Image
 from station.errors import ImageError
+from station.files.regular import read_regular
 
 SUFFIXES = frozenset((".png", ".bmp", ".tif", ".tiff", ".jpg", ".jpeg"))
 """Suffixes of image files that can be read, in lower case."""
@@ -41,9 +42,9 @@ def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise ImageError(f"{path}: larger than 512 MiB, so it is not a frame")
-        raw = np.frombuffer(path.read_bytes(), np.uint8)
-    except OSError as error:
-        raise ImageError(f"{path}: cannot be read ({error.strerror})") from None
+        raw = np.frombuffer(read_regular(path, MAX_BYTES), np.uint8)
+    except (OSError, ValueError) as error:
+        raise ImageError(f"{path}: cannot be read ({getattr(error, 'strerror', error)})") from None
     image = None
     if raw.size:
         try:

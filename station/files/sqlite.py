@@ -40,9 +40,12 @@ def patiently(work: Callable[[], Result], *, codes: tuple[int, ...] = BUSY) -> R
         try:
             return work()
         except sqlite3.OperationalError as error:
-            known = error.sqlite_errorcode in codes or error.sqlite_errorcode & 0xFF in codes
+            code = getattr(error, "sqlite_errorcode", -1)  # an error of the Python module has none
+            known = code in codes or (code > 0 and code & 0xFF in codes)
             if not known or time.monotonic() > until_s:
                 raise
+        except UnicodeError:  # the text of an error contains bytes of a damaged file
+            raise sqlite3.DatabaseError("the file is damaged") from None
         time.sleep(random.uniform(*PAUSE_S))
 
 
@@ -126,6 +129,7 @@ def _opened(path: Path) -> tuple[sqlite3.Connection, bool]:
     writable = os.access(path.parent, os.W_OK) or path.with_name(f"{path.name}-wal").exists()
     mode = "mode=ro" if writable else "mode=ro&immutable=1"
     connection = sqlite3.connect(f"{path.resolve().as_uri()}?{mode}", uri=True, timeout=PATIENCE_S)
+    connection.text_factory = lambda raw: raw.decode("utf-8", "replace")  # damaged text fails its hash
     try:
         return connection, connection.execute("SELECT 1 FROM sqlite_master").fetchone() is not None
     except BaseException:

@@ -5,8 +5,9 @@ Each entry is chained to the previous one by its hash. This module reads; only `
 
 import hashlib
 import sqlite3
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 
@@ -77,8 +78,16 @@ def entries(
     query += f" ORDER BY number {'DESC' if newest_first else 'ASC'}"
     if limit is not None:
         query += f" LIMIT {int(limit)}"
-    return [
-        Entry(
+    return [_entry(folder, row) for row in _rows(folder, query, values)]
+
+
+def _entry(folder: Path, row: Mapping[str, str]) -> Entry:
+    try:
+        if datetime.fromisoformat(row["at"]).utcoffset() is None:
+            raise ValueError("no offset from UTC")
+        if not all(isinstance(row[name], str) for name in COLUMNS):
+            raise TypeError("not a text")
+        return Entry(
             at=row["at"],
             kind=Kind(row["kind"]),
             who=row["who"],
@@ -88,16 +97,26 @@ def entries(
             reason=row["reason"],
             number=int(row["number"]),
         )
-        for row in _rows(folder, query, values)
-    ]
+    except (ValueError, TypeError):
+        raise RecordError(
+            f"{folder / NAME}: entry {row['number']} cannot be read: it is damaged, or of a later version"
+        ) from None
+
+
+def count_entries(folder: Path) -> int:
+    """Return the number of entries, whatever they contain. Raises RecordError."""
+    return sum(int(row["count"]) for row in _rows(folder, "SELECT COUNT(*) AS count FROM entries", []))
 
 
 def verify_journal(folder: Path) -> Iterator[tuple[str, str]]:
     """Yield (place, problem) for every entry that was modified or deleted. Raises RecordError."""
     chain = CHAIN_START
     for row in _rows(folder, f"SELECT number, {', '.join(COLUMNS)}, chain FROM entries ORDER BY number", []):
-        expected = link_entry(chain, [row[name] for name in COLUMNS])
-        if row["chain"] != expected:
+        values = [row[name] for name in COLUMNS]
+        if not all(isinstance(value, str) for value in [row["chain"], *values]):
+            yield f"{NAME}, entry {row['number']}", "was modified: a value is not a text"
+            continue
+        if row["chain"] != link_entry(chain, values):
             yield f"{NAME}, entry {row['number']}", "was modified, or the entry before it was deleted"
         chain = row["chain"]
 
@@ -108,7 +127,7 @@ def _rows(folder: Path, query: str, values: list[str]) -> list[dict[str, str]]:
         return []
     try:
         return [dict(row) for row in read_rows(path, query, values)]
-    except sqlite3.Error as error:
+    except (sqlite3.Error, OverflowError, UnicodeError) as error:
         raise RecordError(f"{path}: cannot be read ({error})") from None
 
 

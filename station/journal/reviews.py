@@ -5,7 +5,8 @@ from enum import StrEnum
 from pathlib import Path
 
 from station.defects import Reason
-from station.journal.journal import Kind, entries
+from station.errors import RecordError
+from station.journal.journal import NAME, Kind, entries
 
 
 class Opinion(StrEnum):
@@ -77,8 +78,13 @@ def reviews(folder: Path) -> dict[int, Review]:
     found: dict[int, Review] = {}
     for entry in entries(folder, (Kind.REVIEW,), newest_first=False):
         opinion, _, where = entry.after.partition(": ")
-        review = found.setdefault(int(entry.subject), Review({}))
-        review.opinions[entry.who] = Opinion(opinion)
-        pairs = (mark.split(" ", 1) for mark in where.split(", ") if mark)
-        review.marks[entry.who] = {int(number): Reason(kind) for number, kind in pairs}
+        try:
+            review = found.setdefault(int(entry.subject), Review({}))
+            review.opinions[entry.who] = Opinion(opinion)
+            pairs = (mark.split(" ", 1) for mark in where.split(", ") if mark)
+            review.marks[entry.who] = {int(number): Reason(kind) for number, kind in pairs}
+        except ValueError:
+            raise RecordError(
+                f"{folder / NAME}: entry {entry.number} is not a review; it is damaged"
+            ) from None
     return found

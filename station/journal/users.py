@@ -1,11 +1,13 @@
 """Users of the station and their levels, stored in the journal; only `accounts` changes them."""
 
-import json
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
-from station.journal.journal import Kind, entries
+from pydantic import TypeAdapter
+
+from station.errors import RecordError
+from station.journal.journal import NAME, Kind, entries
 
 
 class Level(IntEnum):
@@ -37,6 +39,9 @@ class StoredUser:
     hash: str
 
 
+_USER = TypeAdapter(StoredUser)
+
+
 def users(folder: Path) -> list[User]:
     """Return all users, sorted by name. Raises RecordError."""
     return [User(name, stored.level) for name, stored in sorted(stored_users(folder).items())]
@@ -47,8 +52,9 @@ def stored_users(folder: Path) -> dict[str, StoredUser]:
     last: dict[str, str] = {}
     for entry in entries(folder, (Kind.USER,), newest_first=False):
         last[entry.subject] = entry.after
-    found = {name: json.loads(after) for name, after in last.items() if after}
-    return {
-        name: StoredUser(Level(stored["level"]), stored["salt"], stored["hash"])
-        for name, stored in found.items()
-    }
+    try:
+        return {name: _USER.validate_json(after, strict=True) for name, after in last.items() if after}
+    except ValueError:
+        raise RecordError(
+            f"{folder / NAME}: the entry of a user cannot be read; restore the journal"
+        ) from None

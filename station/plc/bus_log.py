@@ -10,7 +10,10 @@ from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from pydantic import TypeAdapter
+
 from station.errors import RecordError
+from station.files.regular import read_regular
 from station.plc.map.codes import ERROR_BAD_TRIGGER_ID, ERROR_STUCK_BIT
 from station.plc.map.registers import Control, Offline, Status, Value, VerdictCode, named_bits, number
 
@@ -23,6 +26,8 @@ WORDS = {
     "status": ("ACK_TRIGGER_ID", "RESULT_TRIGGER_ID", "VERDICT", "CMD_ECHO"),
 }
 """Registers of each window, besides CONTROL and STATUS, whose changes are logged."""
+MAX_FILE_BYTES = 2_000_000_000
+"""Maximum size of the file of a day that is read."""
 TAIL_BYTES = 160
 """Approximate length of a line."""
 MAX_WAITING = 10_000
@@ -43,6 +48,9 @@ class Edge:
     value: int | str
     note: str = field(default="", kw_only=True)
     """How it was cleared, or which rule was broken."""
+
+
+_EDGE = TypeAdapter(Edge)
 
 
 def edges(time_s: float, command: tuple[Values, Values], status: tuple[Values, Values]) -> Iterator[Edge]:
@@ -194,10 +202,10 @@ def tail_bus(folder: Path, place: tuple[str, int], limit: int) -> tuple[list[Edg
                 file.seek(begin)
                 whole = file.read().rpartition(b"\n")[0]
             lines = whole.split(b"\n")[1 if begin > start else 0 :]
-            found += [Edge(**json.loads(line)) for line in lines if line]
+            found += [_EDGE.validate_json(line, strict=True) for line in lines if line]
         except OSError as error:
             raise RecordError(f"{path}: cannot be read ({error.strerror})") from None
-        except (ValueError, TypeError):
+        except ValueError:
             raise RecordError(f"{path}: a line cannot be read; the file was truncated or modified") from None
         place = path.name, begin + len(whole) + (1 if whole else 0)
     return found[-limit:], place
@@ -209,10 +217,14 @@ def read_bus(folder: Path) -> Iterator[Edge]:
     if not files:
         raise RecordError(f"{folder}: no bus log in this folder; name the archive folder of an engine")
     for path in files:
-        for count, line in enumerate(path.read_text().splitlines(), start=1):
+        try:
+            lines = read_regular(path, MAX_FILE_BYTES).split(b"\n")
+        except OSError as error:
+            raise RecordError(f"{path}: cannot be read ({error.strerror})") from None
+        for count, line in enumerate(lines[:-1] if lines[-1] == b"" else lines, start=1):
             try:
-                yield Edge(**json.loads(line))
-            except (ValueError, TypeError):
+                yield _EDGE.validate_json(line, strict=True)
+            except ValueError:
                 raise RecordError(
                     f"{path}: line {count} cannot be read; the file was truncated or modified"
                 ) from None
