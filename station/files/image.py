@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 
 from station.domain import Image
 from station.errors import ImageError
+from station.files.image_header import read_header
 from station.files.regular import read_regular
 
 SUFFIXES = frozenset((".png", ".bmp", ".tif", ".tiff", ".jpg", ".jpeg"))
 """Suffixes of image files that can be read, in lower case."""
 MAX_BYTES = 512 * 1024 * 1024
 """Maximum size of an image file."""
-MAX_SIDE_PX = 32_000
-"""Maximum width and height of an image."""
 PNG = (
     *(cv2.IMWRITE_PNG_COMPRESSION, 1),
     *(cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_AVG),
@@ -45,8 +44,10 @@ def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
         raw = np.frombuffer(read_regular(path, MAX_BYTES), np.uint8)
     except (OSError, ValueError) as error:
         raise ImageError(f"{path}: cannot be read ({getattr(error, 'strerror', error)})") from None
-    image = None
-    if raw.size:
+    image, header = None, read_header(raw.tobytes())
+    if header is not None and (problem := header.problem()) is not None:
+        raise ImageError(f"{path}: {problem}")
+    if raw.size and header is not None:
         try:
             image = cv2.imdecode(raw, cv2.IMREAD_UNCHANGED)
         except cv2.error:
@@ -55,9 +56,6 @@ def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
         raise ImageError(f"{path}: not a readable image; use PNG, BMP, TIFF or JPEG")
     if image.dtype not in (np.uint8, np.uint16):
         raise ImageError(f"{path}: pixels are {image.dtype}; use 8 or 16 bits per pixel")
-    if max(image.shape[:2]) > MAX_SIDE_PX:
-        size = f"{image.shape[1]} x {image.shape[0]} px"
-        raise ImageError(f"{path}: {size} is too large; the maximum is {MAX_SIDE_PX} px per side")
     if image.ndim == 3 and image.shape[2] >= 3 and not _grey(image):
         warnings.append("colour: only the brightness is judged")
     if image.ndim == 3:
@@ -65,6 +63,12 @@ def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
             image[:, :, 0]
             if image.shape[2] < 3
             else cv2.cvtColor(np.ascontiguousarray(image[:, :, :3]), cv2.COLOR_BGR2GRAY)
+        )
+    if image.dtype == np.uint16 and (highest := int(image.max(initial=0))) < 1 << 14:
+        bits = max(8, highest.bit_length())
+        warnings.append(
+            f"only {bits} of 16 bits are used (highest value {highest} of 65535), but the upper 8 bits are "
+            f"judged; multiply the values by {1 << (16 - bits)}"
         )
     if image.dtype == np.uint16:
         image = np.asarray(image // 256, np.uint8)

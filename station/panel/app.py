@@ -40,7 +40,7 @@ def run_panel(path: Path) -> int:
     app = QApplication.instance() or QApplication(sys.argv[:1])
     window = open_window(path)
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: window.close())
+        signal.signal(number, lambda *_: QTimer.singleShot(0, window.close))  # not in the middle of a poll
     wake = QTimer()  # lets Python see signals while Qt waits
     wake.start(200)
     wake.timeout.connect(window.isVisible)

@@ -26,7 +26,8 @@ class Source:
 def sources(paths: Iterable[Path]) -> list[Source]:
     """Return the images among `paths`.
 
-    Folders are searched recursively in the order of names; links to folders are not followed. For an archive,
+    Folders are searched recursively in the order of names; hidden names and links to folders are passed
+    over. For an archive,
     the frames of its records are returned. A file that is found twice is judged once. Raises ImageError if a
     path does not exist or no image is found, RecordError if an archive cannot be read.
     """
@@ -53,8 +54,14 @@ def sources(paths: Iterable[Path]) -> list[Source]:
 
 def _below(folder: Path) -> Iterator[Path]:
     for place, folders, files in os.walk(folder):
-        folders.sort()
-        yield from (Path(place) / name for name in sorted(files) if Path(name).suffix.lower() in SUFFIXES)
+        folders[:] = sorted(name for name in folders if not _is_hidden(name))
+        images = sorted(name for name in files if Path(name).suffix.lower() in SUFFIXES)
+        yield from (Path(place) / name for name in images if not _is_hidden(name))
+
+
+def _is_hidden(name: str) -> bool:
+    """Return whether a program made this for itself: companions of a Mac, checkpoints, a NAS's thumbnails."""
+    return name.startswith(".") or name == "@eaDir"
 
 
 def _real(path: Path) -> Path:

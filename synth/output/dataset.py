@@ -158,7 +158,7 @@ def _finish(out: Path, shards: list[Shard], manifest: dict[str, Any]) -> None:
         for kind in CROP_KINDS:
             (out / "images" / split / kind).mkdir(parents=True, exist_ok=True)
     names = "".join(f"  {number}: {name}\n" for number, name in enumerate(DETECTED))
-    write_text(out / "data.yaml", f"path: .\ntrain: images/train\nval: images/val\nnames:\n{names}")
+    write_text(out / "data.yaml", f"train: images/train\nval: images/val\nnames:\n{names}")
     write_text(out / "manifest.json", json.dumps({**manifest, "images": images}, indent=1))
 
 

@@ -154,6 +154,7 @@ def test_files_are_laid_out_for_the_usual_tools(tmp_path: Path, model: WeldModel
             border_px = sum(cv2.arcLength(border, True) for border in borders)  # most of a thin kind's pixels
             assert drawn.sum() == pytest.approx(annotation["area"], rel=0.35, abs=max(30, border_px))
     assert (tmp_path / "data.yaml").read_text().count("images/") == 2
+    assert "path" not in (tmp_path / "data.yaml").read_text(), "it counts from the folder of the file"
 
 
 @pytest.mark.render

@@ -32,6 +32,8 @@ class Bridge(QObject):
 
     def poll(self) -> None:
         """Emit what has come; called regularly."""
+        if not self._timer.isActive():  # closed while this call was waiting
+            return
         parts: list[PartEvent] = []
         for event in self._subscriber.events():
             if isinstance(event, StatusEvent):
@@ -42,8 +44,12 @@ class Bridge(QObject):
                 self.setup_image.emit(event)
         if parts:
             self.parts.emit(parts)
+        if not self._timer.isActive():  # closed by what was emitted
+            return
         for answer in self._client.answers():
             self.answer.emit(answer)
+        if not self._timer.isActive():
+            return
         preview = self._subscriber.preview()
         if preview is not None:
             self.preview.emit(preview)
