@@ -47,6 +47,7 @@ FORMULAS = (
     *(f"synth/surface/{name}.py" for name in ("materials", "mesh", "noise", "ripples", "topography")),
     "station/classify/onnx.py",
     "station/panel/look/theme.py",
+    "station/plc/block/timers.py",
     "station/plc/block/transcribe.py",
 )
 """Files whose formulas use letters as in mathematics."""

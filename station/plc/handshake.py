@@ -140,7 +140,7 @@ def _commanded(
             state = _wiped(replace(state, phase=Phase.IDLE))
     elif code == CommandCode.ABORT:
         rising |= Control.ABORT
-    elif code in (CommandCode.RESET_COUNTERS, CommandCode.TIME_SYNC):
+    elif code == CommandCode.RESET_COUNTERS or (code == CommandCode.TIME_SYNC and inputs.plc_time_s > 0):
         command = Command(CommandCode(code), inputs.arg, state.commands + 1, now_s)
         state = replace(state, commands=command.number)
     elif (
@@ -220,7 +220,14 @@ def _triggered(state: State, inputs: Inputs, now_s: float, was_ready: bool) -> S
     if inputs.trigger_id in (0, state.last_id):
         return replace(state, missed=True, error_code=state.error_code or codes.ERROR_BAD_TRIGGER_ID)
     golden = bool(inputs.control & Control.GOLDEN_CHECK)
-    trigger = Trigger(inputs.trigger_id, inputs.serial, now_s, state.accepted + 1, golden=golden)
+    trigger = Trigger(
+        inputs.trigger_id,
+        inputs.serial,
+        now_s,
+        state.accepted + 1,
+        golden=golden,
+        serial_words=inputs.serial_words,
+    )
     state = replace(_wiped(state), accepted=trigger.number)
     return replace(
         state,

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from station.plc.map.registers import Control, Offline, all_bits
-from station.plc.port import Command, Health, Result, Trigger
+from station.plc.port import NO_SERIAL, Command, Health, Result, Trigger
 
 ALL_CONTROL = all_bits(Control)
 """Mask of all bits of CONTROL, which count as held until the first read of the PLC."""
@@ -50,6 +50,10 @@ class Inputs:
     """Number of the trigger whose image has been taken."""
     result: Result | None = None
     arg: int = 0
+    serial_words: tuple[int, ...] = NO_SERIAL
+    """Words of PART_SERIAL."""
+    plc_time_s: int = 0
+    """PLC_TIME; 0: not known."""
     command_done: tuple[int, bool] | None = None
     """Number of the command that has ended, and whether it succeeded."""
     link: bool = True

@@ -14,6 +14,7 @@ from station.plc.handshake import step
 from station.plc.handshake_state import ALL_CONTROL, Inputs, Phase, State, Step, Times
 from station.plc.map import status_window
 from station.plc.map.registers import (
+    BY_NAME,
     COMMAND_START,
     COMMAND_WORDS,
     STATUS_START,
@@ -34,6 +35,8 @@ from station.settings.model import PlcSettings
 
 log = logging.getLogger("weldgate.line")
 
+SERIAL = BY_NAME["PART_SERIAL"]
+"""Register whose words are echoed."""
 GRACE_S = 2.0
 """Longest interruption of the link that does not end the part in progress."""
 ANSWER_S = 5.0
@@ -240,12 +243,14 @@ class ModbusLine:
             plc_heartbeat=number(command, "PLC_HEARTBEAT"),
             trigger_id=number(command, "TRIGGER_ID"),
             serial=str(command["PART_SERIAL"]),
+            serial_words=tuple(self._command_words[SERIAL.address - COMMAND_START :][: SERIAL.words]),
             command=number(command, "COMMAND"),
             health=self._health,
             health_age_s=now_s - self._health_s,
             exposure_done_for=exposed,
             result=result,
             arg=number(command, "ARG"),
+            plc_time_s=number(command, "PLC_TIME"),
             command_done=done,
             link=link,
             link_was_lost=self._lost_s is not None,

@@ -3,7 +3,18 @@
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from station.plc.map.registers import CommandCode, Control, Flags, Offline, Status, VerdictCode
+from station.plc.map.registers import (
+    BY_NAME,
+    CommandCode,
+    Control,
+    Flags,
+    Offline,
+    Status,
+    VerdictCode,
+)
+
+NO_SERIAL = (0,) * BY_NAME["PART_SERIAL"].words
+"""Words of PART_SERIAL without a serial."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +29,8 @@ class Trigger:
     """Running number of accepted triggers; unlike the PLC's 16-bit id it never repeats."""
     golden: bool = field(default=False, kw_only=True)
     """True if a master is in the nest: the PLC always reads TEST."""
+    serial_words: tuple[int, ...] = field(default=NO_SERIAL, kw_only=True)
+    """Words of PART_SERIAL as the PLC wrote them; they are echoed unchanged, whatever text they hold."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,14 +4,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from station.plc.block.definition import POINTS, REFUSALS, body
-from station.plc.block.transcribe import Block, tokens
+from station.plc.block.definition import POINTS, REFUSALS
+from station.plc.block.statements import body
+from station.plc.block.transcribe import Block, _Writer, tokens
 from station.plc.map.registers import (
     BY_NAME,
     COMMAND_START,
     COMMAND_WORDS,
     STATUS_START,
     STATUS_WORDS,
+    TEST_F32,
+    TEST_U32,
     Control,
     Flags,
     Status,
@@ -83,6 +86,9 @@ def refused(words: list[int], **options: bool) -> str | None:
     plc = Plc(**options).until_in_work()
     plc.cycle(words)
     assert plc.v.State == 50
+    assert not plc.v.PartOk, "only with PartDone"
+    plc.cycle(window(STATUS=int(Status.ONLINE), VERDICT=0))
+    assert plc.v.PartDone
     assert plc.v.PartOk == (plc.v.Refusal == 0)
     return REFUSALS[plc.v.Refusal] or None
 
@@ -90,7 +96,7 @@ def refused(words: list[int], **options: bool) -> str | None:
 def test_a_part_from_start_to_done() -> None:
     plc = Plc().until_in_work()
     plc.cycle(window())
-    assert plc.v.PartOk
+    assert not plc.v.PartOk
     assert not plc.v.PartDone
     assert plc.v.Command[0] == Control.ENABLE | Control.RESULT_ACK
     plc.cycle(window(STATUS=int(Status.ONLINE), VERDICT=0))
@@ -161,6 +167,8 @@ def test_a_master_never_passes_and_asks_for_the_check() -> None:
     assert plc.v.Command[0] == Control.ENABLE | Control.TRIGGER | Control.GOLDEN_CHECK
     plc.cycle(window(STATUS=int(Status.TRIGGER_ACK), VERDICT=0))
     plc.cycle(window())
+    plc.cycle(window(STATUS=0, VERDICT=0))
+    assert plc.v.PartDone
     assert not plc.v.PartOk
 
 
@@ -174,6 +182,8 @@ def test_a_window_that_passes_refuses_and_frees_the_block(answers: int, said: st
     for number in range(120):
         bits = Status.READY if number < answers else Status(0)
         plc.cycle(window(STATUS=int(bits), VERDICT=0, ACK_TRIGGER_ID=0), wait_s=0.05)
+        if plc.v.PartDone:
+            break
     assert (plc.v.PartDone, plc.v.PartOk, plc.v.State, plc.v.Busy) == (True, False, 0, False)
     assert REFUSALS[plc.v.Refusal] == said
     assert plc.v.Command[0] == Control.ENABLE
@@ -184,10 +194,12 @@ def test_an_ok_of_the_part_before_is_gone_with_the_next_start() -> None:
     plc.cycle(window())
     plc.cycle(window(STATUS=0, VERDICT=0))
     assert plc.v.PartOk
+    assert plc.v.Result.VERDICT == 1
     plc.v.Start = True
     plc.cycle(window(STATUS=0, VERDICT=0))
     assert not plc.v.PartOk
     assert not plc.v.PartDone
+    assert (plc.v.Busy, plc.v.Result.VERDICT, plc.v.Result.NUMBER) == (True, 0, 1)
 
 
 def test_the_number_of_the_last_trigger_is_never_used_again() -> None:
@@ -208,6 +220,7 @@ def test_a_read_torn_between_a_wiped_and_a_good_record_never_passes(cut: int) ->
     for torn in (good[:cut] + wiped[cut:], wiped[:cut] + good[cut:]):
         plc = Plc().until_in_work()
         plc.cycle(torn)
+        plc.cycle(window(STATUS=0, VERDICT=0))
         same = [*torn[:1], *torn[2:]] == [*good[:1], *good[2:]]
         read = unpack_window(STATUS_START, torn)
         of_no_use = all(
@@ -223,13 +236,16 @@ def test_noise_never_passes(words: list[int]) -> None:
     plc = Plc().until_in_work()
     plc.cycle(words)
     assert not plc.v.PartOk
+    plc.cycle(window(STATUS=0, VERDICT=0))
+    assert not plc.v.PartOk
 
 
 def test_the_record_is_decoded() -> None:
     plc = Plc()
-    plc.cycle(window(INSPECTION_ID=70000, SEG_SCORE=tuple(range(21)), TEST_U32=0x12345678))
+    plc.cycle(window(INSPECTION_ID=70000, SEG_SCORE=tuple(range(21)), TEST_U32=TEST_U32, TEST_F32=TEST_F32))
     info = plc.v.Info
     assert (info.INSPECTION_ID, info.TEST_U32, info.SEG_SCORE) == (70000, 0x12345678, list(range(21)))
+    assert info.TEST_F32 == pytest.approx(123.456, abs=1e-5)
 
 
 def test_the_block_writes_inside_the_command_window() -> None:
@@ -241,3 +257,5 @@ def test_what_is_not_structured_text_is_refused() -> None:
     with pytest.raises(ValueError, match="not Structured Text"):
         tokens("a := b ? c;")
     assert len(POINTS) == body().count("IF (Refusal = 0)")
+    with pytest.raises(ValueError, match="instead of"):
+        _Writer("a := b").program()

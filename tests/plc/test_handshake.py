@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from hypothesis import settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
@@ -12,17 +12,21 @@ from station.plc.handshake import ready, step
 from station.plc.handshake_state import Inputs, State, Step, Times
 from station.plc.map import status_window
 from station.plc.map.registers import (
+    BY_NAME,
     MAP,
     REFUSED,
     STATUS_START,
+    STATUS_WORDS,
     CommandCode,
     Control,
     Offline,
     Status,
     VerdictCode,
     number,
+    pack_window,
+    unpack,
 )
-from station.plc.port import Command, Counts, Health, Result, Trigger
+from station.plc.port import NO_SERIAL, Command, Counts, Health, Result, Trigger
 
 WELL = Health(ready=True, offline=Offline.NONE, failure=False, config_crc=7)
 LOST = Health(ready=False, offline=Offline.CAMERA_LOST, failure=True, config_crc=7)
@@ -52,6 +56,7 @@ class Driver:
     def __init__(self) -> None:
         self.state, self.now, self.beat = State(), 100.0, 0
         self.control, self.trigger_id, self.health, self.silent, self.command = Control(0), 0, WELL, False, 0
+        self.serial_words, self.plc_time_s = NO_SERIAL, 0
         self.started: list[Trigger] = []
         self.commanded: list[Command] = []
 
@@ -77,6 +82,8 @@ class Driver:
             exposure_done_for=exposed,
             result=offered,
             arg=2,
+            serial_words=self.serial_words,
+            plc_time_s=self.plc_time_s,
             command_done=done,
             link=link,
             link_was_lost=link_was_lost,
@@ -289,10 +296,34 @@ def test_a_recipe_is_loaded_with_ready_at_zero_and_the_result_wiped(
 def test_a_command_of_the_line_leaves_an_unread_result_alone(code: CommandCode, plc: Driver) -> None:
     plc.trigger(1)
     plc.step(result(plc.started[-1]))
-    plc.control, plc.command = ON | Control.EXEC_COMMAND, code
+    plc.control, plc.command, plc.plc_time_s = ON | Control.EXEC_COMMAND, code, 1_800_000_000
     plc.step()
     assert [c.code for c in plc.commanded] == [code]
     assert (plc.values()["CMD_ECHO"], plc.values()["VERDICT"]) == (code, 1)
+
+
+def test_a_comparison_of_clocks_without_a_time_of_the_plc_is_refused(plc: Driver) -> None:
+    plc.control, plc.command = ON | Control.EXEC_COMMAND, CommandCode.TIME_SYNC
+    plc.step()
+    assert not plc.commanded
+    assert plc.values()["CMD_ECHO"] == REFUSED
+
+
+@given(st.lists(st.integers(0, 0xFFFF), min_size=16, max_size=16))
+def test_the_serial_comes_back_word_by_word_whatever_text_it_holds(words: list[int]) -> None:
+    """Bytes above 127, bytes behind a NUL, the length bytes of a STRING: the PLC compares words."""
+    plc = Driver()
+    plc.control, plc.serial_words = ON, tuple(words)
+    plc.step()
+    plc.step()
+    plc.trigger(1)
+    plc.step(result(plc.started[-1]))
+    window = pack_window(STATUS_START, STATUS_WORDS, status_window.values(plc.state, WELL, plc.now, Counts()))
+    register = BY_NAME["SERIAL_ECHO"]
+    assert window[register.address - STATUS_START :][: register.words] == words
+    text = unpack(register, words)
+    assert isinstance(text, str)
+    assert text.isprintable()
 
 
 def test_the_heartbeat_goes_on_through_a_long_part(plc: Driver) -> None:

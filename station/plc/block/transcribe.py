@@ -1,19 +1,22 @@
 """Translates the block's Structured Text to Python, so that the simulated line runs what PLCs run.
 
-Covers what `definition` uses: assignments, IF, CASE, FOR, calls of TON and R_TRIG, and expressions by the
-precedence of IEC 61131-3 table 71.
+Covers what `statements` uses: assignments, IF, CASE, FOR, calls of TON, and expressions by the precedence of
+IEC 61131-3 table 71. A division is one of whole numbers.
 """
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from types import CodeType, SimpleNamespace
 from typing import Any
 
-from station.plc.block.definition import RECORD, VARIABLES, body, fields
+from station.plc.block.data_types import ARRAYS, RECORDS
+from station.plc.block.definition import VARIABLES
+from station.plc.block.statements import body
+from station.plc.block.timers import Clock, TimerKind, timer
 
 TOKEN = re.compile(
-    r"\(\*.*?\*\)|:=|<>|<=|>=|\.\.|T#\w+|16#[0-9A-F]+|[A-Za-z_]\w*|\d+|[-+*()\[\];,.:=<>]", re.S
+    r"\(\*.*?\*\)|:=|<>|<=|>=|\.\.|T#\w+|16#[0-9A-F]+|[A-Za-z_]\w*|\d+\.\d+|\d+|[-+*/()\[\];,.:=<>]",
+    re.S,
 )
 """Pattern of a comment or of one token."""
 LEVELS: tuple[dict[str, str], ...] = (
@@ -22,11 +25,13 @@ LEVELS: tuple[dict[str, str], ...] = (
     {"=": "==", "<>": "!="},
     {"<": "<", ">": ">", "<=": "<=", ">=": ">="},
     {"+": "+", "-": "-"},
-    {"*": "*", "MOD": "%"},
+    {"*": "*", "/": "//", "MOD": "%"},
 )
 """Operators with Python's equivalent, the weakest first; every operation is put in brackets."""
 UNITS = {"ms": 0.001, "s": 1.0}
 """Units of a time in seconds."""
+MASKS = {"WORD": 0xFFFF, "UINT": 0xFFFF, "INT": 0x7FFF, "UDINT": 0xFFFFFFFF}
+"""Bits that a conversion keeps, by its target; no INT of the block is negative."""
 
 
 def tokens(text: str) -> list[str]:
@@ -172,64 +177,42 @@ class _Writer:
         if token.startswith("16#"):
             return str(int(self._take()[3:], 16))
         if token.startswith("T#"):
-            amount, unit = re.fullmatch(r"T#(\d+)(ms|s)", self._take()).groups()  # type: ignore[union-attr]
-            return repr(int(amount) * UNITS[unit])
-        if token.isdigit():
+            return repr(_seconds(self._take()))
+        if token[0].isdigit():
             return self._take()
         if token in ("TRUE", "FALSE"):
             return self._take().capitalize()
         if "_TO_" in token and self._peek(1) == "(":
             self._take()
-            bits = {"WORD": 0xFFFF, "UINT": 0xFFFF, "UDINT": 0xFFFFFFFF}[token.split("_TO_")[1]]
+            target = token.split("_TO_")[1]
             self._take("(")
             inner = self._expression()
             self._take(")")
-            return f"({inner} & {bits})"
+            return f"float({inner})" if target == "REAL" else f"({inner} & {MASKS[target]})"
         return self._place()
 
 
-@dataclass
-class _Ton:
-    """On-delay timer of IEC 61131-3, table 46: Q is TRUE once IN has been TRUE for PT."""
-
-    Q: bool = False
-    since_s: float | None = None
-
-    def __call__(self, now_s: float, IN: bool, PT: float) -> None:  # noqa: N803 - the standard's names
-        if not IN:
-            self.since_s, self.Q = None, False
-        else:
-            self.since_s = now_s if self.since_s is None else self.since_s
-            self.Q = now_s - self.since_s >= PT
+def compiled(text: str) -> CodeType:
+    """Return statements, as those of the block's body, as code over `v` (the variables) and `now_s`."""
+    return compile(_Writer(text).program(), "WeldgateStation", "exec")
 
 
-@dataclass
-class _Edge:
-    """Rising-edge trigger of IEC 61131-3, table 44: Q is TRUE for one call after CLK rose."""
-
-    Q: bool = False
-    before: bool = field(default=False)
-
-    def __call__(self, _now_s: float, CLK: bool) -> None:  # noqa: N803 - the standard's names
-        self.Q, self.before = CLK and not self.before, CLK
-
-
-def compiled() -> CodeType:
-    """Return the block's body as code over `v` (the variables) and `now_s`."""
-    return compile(_Writer(body()).program(), "WeldgateStation", "exec")
+def _seconds(time: str) -> float:
+    """Return a time such as T#500ms in seconds."""
+    amount, unit = re.fullmatch(r"T#(\d+)(ms|s)", time).groups()  # type: ignore[union-attr]
+    return int(amount) * UNITS[unit]
 
 
 def _initial(kind: str, initial: str) -> Any:
-    array = re.fullmatch(r"ARRAY\[0\.\.(\d+)\] OF (\w+)", kind)
-    if array:
-        return [_initial(array[2], "")] * (int(array[1]) + 1)
-    if kind in ("TON", "R_TRIG"):
-        return _Ton() if kind == "TON" else _Edge()
-    if kind == RECORD:
-        return SimpleNamespace(**{name: _initial(of, "") for name, of, _ in fields()})
+    if kind in ARRAYS:
+        return [_initial(ARRAYS[kind].type, "")] * ARRAYS[kind].count
+    if kind in RECORDS:
+        return SimpleNamespace(**{each.name: _initial(each.type, "") for each in RECORDS[kind]})
     if kind == "TIME":
-        return float(initial.removeprefix("T#").removesuffix("s"))
-    return {"BOOL": False}.get(kind, int(initial or 0))
+        return _seconds(initial or "T#0s")
+    if kind == "REAL":
+        return 0.0
+    return initial == "TRUE" if kind == "BOOL" else int(initial or 0)
 
 
 class Block:
@@ -237,17 +220,20 @@ class Block:
 
     _code: CodeType | None = None
 
-    def __init__(self) -> None:
+    def __init__(self, timers: TimerKind = TimerKind.CALL) -> None:
         if Block._code is None:
-            Block._code = compiled()
-        self.v = SimpleNamespace(**dict(_variables()))
+            Block._code = compiled(body())
+        self._clock = Clock()
+        self.v = SimpleNamespace(**dict(_variables(timers, self._clock)))
 
     def cycle(self, now_s: float) -> None:
         """Run one cycle of the PLC at a monotonic time."""
+        self._clock.now_s = max(self._clock.now_s, now_s)
         if Block._code is not None:
             exec(Block._code, {"v": self.v, "now_s": now_s})
 
 
-def _variables() -> Iterator[tuple[str, Any]]:
+def _variables(timers: TimerKind, clock: Clock) -> Iterator[tuple[str, Any]]:
     for variable in VARIABLES:
-        yield variable.name, _initial(variable.type, variable.initial)
+        is_timer = variable.type == "TON"
+        yield variable.name, timer(timers, clock) if is_timer else _initial(variable.type, variable.initial)

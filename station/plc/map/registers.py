@@ -147,7 +147,7 @@ MAP: tuple[Register, ...] = (
     Register(3, "COMMAND", "u16", "command code for EXEC_COMMAND, see COMMAND"),
     Register(4, "ARG", "u16", "argument of the command: number of the recipe"),
     Register(5, "PART_SERIAL", "ascii", "part serial, 0-padded, high byte first", count=32),
-    Register(21, "PLC_TIME", "u32", "epoch seconds, optional"),
+    Register(21, "PLC_TIME", "u32", "epoch seconds, for command 21; 0: not known"),
     Register(100, "STATUS", "u16", "bits, see Status"),
     Register(101, "HEARTBEAT", "u16", "+1 per 100 ms while the inspection is alive"),
     Register(102, "SEQ_HEAD", "u16", "record counter"),
@@ -205,11 +205,16 @@ BY_NAME = {register.name: register for register in MAP}
 
 
 def pack(register: Register, value: Value) -> list[int]:
-    """Return the words of one value. Raises ValueError if it does not fit."""
+    """Return the words of one value. Raises ValueError if it does not fit.
+
+    A value of kind ascii is a text, or its words as they are.
+    """
     if register.kind == "ascii":
+        if isinstance(value, tuple):
+            value = struct.pack(f">{len(value)}H", *value).decode("latin-1")
         if not isinstance(value, str):
             raise ValueError(f"{register.name}: text expected")
-        raw = value.encode("ascii", "replace")
+        raw = value.encode("latin-1", "replace")
         if len(raw) > register.count:
             raise ValueError(f"{register.name}: {len(raw)} characters; at most {register.count} fit")
         raw = raw.ljust(register.count, b"\0")
@@ -226,10 +231,14 @@ def pack(register: Register, value: Value) -> list[int]:
 
 
 def unpack(register: Register, words: list[int]) -> Value:
-    """Return the value of one register's words."""
+    """Return the value of one register's words.
+
+    A text ends before its first NUL; characters that cannot be printed read U+FFFD.
+    """
     raw = struct.pack(f">{register.words}H", *words)
     if register.kind == "ascii":
-        return raw.split(b"\0", 1)[0].decode("ascii", "replace")
+        text = raw.split(b"\0", 1)[0].decode("latin-1")
+        return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
     code = {"u16": "H", "u32": "I", "f32": "f"}[register.kind]
     values = struct.unpack(f">{register.count}{code}", raw)
     return values[0] if register.count == 1 else values

@@ -85,7 +85,7 @@ def values(state: State, health: Health, now_s: float, counts: Counts) -> dict[s
             "SEG_INVALID_MASK": shown.seg_invalid_mask,
             "T_PROCESS_MS": state.process_ms,
             "RESULT_AGE_10MS": min(0xFFFF, int((now_s - state.shown_s) * 100)),
-            "SERIAL_ECHO": shown.trigger.serial,
+            "SERIAL_ECHO": shown.trigger.serial_words,
             "FLAGS": int(shown.flags),
         }
         if shown.seg_scores:

@@ -13,6 +13,7 @@ from typing import TypeVar
 
 from station.errors import LineError
 from station.plc.block.definition import NO_RESULT, NOT_READY, REFUSALS
+from station.plc.block.timers import TimerKind
 from station.plc.block.transcribe import Block
 from station.plc.map.registers import (
     BY_NAME,
@@ -38,6 +39,10 @@ Outcome = TypeVar("Outcome")
 
 POLL_S = 0.004
 """Time between two cycles of the PLC."""
+UNSEEN_CYCLES = 5
+"""Cycles after which a program gives up on a Start that the block has not seen rise."""
+UNSEEN = "the block saw no edge of Start"
+"""What a part is refused by that was never begun."""
 SILENCE_S = (0.05, 0.8)
 """Shortest and longest time for which a faulty PLC does nothing."""
 
@@ -52,6 +57,8 @@ class Fault(StrEnum):
     TORN_READS = "torn reads"
     SILENCE = "silence"
     STORM = "reconnect storm"
+    NO_REST = "start without rest"
+    START_AGAIN = "start again while busy"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,10 +83,23 @@ class Answer:
 class SimulatedLine:
     """A simulated PLC that drives one station part by part."""
 
-    def __init__(self, windows: Windows, accept_simulated: bool, recipe: int = 1, seed: int = 0) -> None:
-        """`accept_simulated`: let parts pass on verdicts of an emulated camera; `recipe`: expected recipe."""
+    def __init__(
+        self,
+        windows: Windows,
+        accept_simulated: bool,
+        *,
+        recipe: int = 1,
+        seed: int = 0,
+        poll_s: float = POLL_S,
+        timers: TimerKind = TimerKind.CALL,
+    ) -> None:
+        """`accept_simulated`: let parts pass on verdicts of an emulated camera; `recipe`: expected recipe.
+
+        `poll_s`: time between two cycles; `timers`: how the controller's timers work.
+        """
         self._windows = windows
-        self._block = Block()
+        self._block = Block(timers)
+        self._poll_s = poll_s
         self._plc = self._block.v  # variables of the block
         self._plc.AcceptSimulated, self._plc.Recipe = accept_simulated, recipe
         self._rng = random.Random(seed)
@@ -157,9 +177,11 @@ class SimulatedLine:
         valid_s: float | None = None
         silent_in = self._rng.choice((10, 30, 40, 50))
         until = time.monotonic() + 2 * window_s
+        cycles = 0
         while time.monotonic() < until:
             await self._cycle()
-            plc.Start = False
+            cycles += 1
+            plc.Start = self._start_after(cycles, faults)
             if plc.State == 30 and triggered_s is None:
                 triggered_s = time.monotonic()
             if plc.State == 50 and valid_s is None:
@@ -169,22 +191,30 @@ class SimulatedLine:
             if not quiet and plc.State == silent_in:
                 quiet = True
                 await asyncio.sleep(self._rng.uniform(*SILENCE_S))
-            if plc.PartDone and plc.State == 0:
+            if plc.PartDone or (cycles >= UNSEEN_CYCLES and not plc.Busy):
                 break
-            await asyncio.sleep(POLL_S)
+            await asyncio.sleep(self._poll_s)
+        if not plc.PartDone:
+            plc.Start = False
         self._faults = frozenset()
         return self._answer(
             seen, None if triggered_s is None or valid_s is None else (valid_s - triggered_s) * 1000
         )
 
+    def _start_after(self, cycles: int, faults: frozenset[Fault]) -> bool:
+        """Return Start for the next cycle; without rest it is still held when the next part comes."""
+        if Fault.START_AGAIN in faults and self._plc.State >= 30:
+            return cycles % 2 == 0
+        return Fault.NO_REST in faults
+
     def _answer(self, seen: dict[str, Value] | None, took_ms: float | None) -> Answer:
         plc = self._plc
-        refused = REFUSALS[plc.Refusal] or None
+        refused = (REFUSALS[plc.Refusal] or None) if plc.PartDone else UNSEEN
         values = seen or {"VERDICT": 0, "INSPECTION_ID": 0, "REASON": 0, "FLAGS": 0}
         code = number(values, "VERDICT")
-        answered = seen is not None and plc.Refusal not in (NOT_READY, NO_RESULT)
+        answered = plc.PartDone and seen is not None and plc.Refusal not in (NOT_READY, NO_RESULT)
         return Answer(
-            accepted=plc.PartOk,
+            accepted=plc.PartDone and plc.PartOk,
             verdict=VerdictCode(code) if code in list(VerdictCode) else VerdictCode.NONE,
             refused_by=refused,
             trigger_to_valid_ms=took_ms,
@@ -201,7 +231,7 @@ class SimulatedLine:
             await self._cycle()
             if self._plc.Fresh and condition():
                 return True
-            await asyncio.sleep(POLL_S)
+            await asyncio.sleep(self._poll_s)
         return False
 
     async def _storm(self) -> None:
@@ -213,6 +243,7 @@ class SimulatedLine:
     async def _cycle(self) -> None:
         """Run one cycle of the PLC: read, run the block, write what changed."""
         plc = self._plc
+        plc.PlcTime = int(time.time())
         try:
             if not self._connected:
                 await self._windows.connect()
