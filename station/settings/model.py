@@ -11,9 +11,10 @@ from station.defects import kind_named
 from station.domain import NETWORK_UM_PER_PX, TRAINED_UM_PER_PX
 from station.errors import SettingsError
 from station.numbers import number_key
-from station.register_windows import COMMAND_START, COMMAND_WORDS, STATUS_START, STATUS_WORDS
-from station.settings.address import Loopback, Networks, Port
+from station.settings.address import Loopback, Port
 from station.settings.camera import AnyCamera, ReplaySettings
+from station.settings.plc import PlcSettings as PlcSettings
+from station.settings.plc import TlsSettings as TlsSettings
 from station.settings.quality import Fraction
 from station.settings.quality import QualitySettings as QualitySettings
 from station.settings.section import FilePath, Section
@@ -83,15 +84,6 @@ class ModelSettings(Section):
         return self
 
 
-class TlsSettings(Section):
-    """Certificates for Modbus/TCP Security; `weldgate certificates` makes some for tests."""
-
-    certificate_path: FilePath
-    key_path: FilePath
-    ca_path: FilePath
-    """Certificate of the authority whose certificates are trusted."""
-
-
 class GoldenSettings(Section):
     """Masters: parts of known verdict for the master check."""
 
@@ -108,49 +100,6 @@ class RecipeSettings(Section):
     weld: dict[str, Any] = Field(default_factory=dict)
     quality: dict[str, Any] = Field(default_factory=dict)
     model: dict[str, Any] = Field(default_factory=dict)
-
-
-class PlcSettings(Section):
-    """Connection to the PLC: address, access and times of the handshake."""
-
-    mode: Literal["server", "client"] = "server"
-    """server: the PLC accesses the registers of the station; client: the station accesses those of the
-    PLC."""
-    host: str = "127.0.0.1"
-    """Address of the station (server) or of the PLC (client)."""
-    port: Port = 1502
-    unit: int = Field(default=1, ge=0, le=255)
-    command_base: int = Field(default=COMMAND_START, ge=0, le=65536 - COMMAND_WORDS)
-    """Address of the command window in the PLC (client)."""
-    status_base: int = Field(default=STATUS_START, ge=0, le=65536 - STATUS_WORDS)
-    """Address of the status window in the PLC (client)."""
-    poll_ms: int = Field(default=20, ge=5, le=1000)
-    timeout_ms: int = Field(default=400, ge=50, le=5000)
-    """Time allowed for the response to one request (client)."""
-    low_word_first: bool = False
-    """True if 32-bit values start with their low word; the test pattern shows whether that is right."""
-    allow: Networks = ()
-    """Networks from which peers can connect (server); empty: all."""
-    writer_idle_ms: int = Field(default=2_000, ge=100, le=600_000)
-    """Time without a write after which another peer can take over the right to write (server)."""
-    tls: TlsSettings | None = None
-    deadline_ms: int = Field(default=2000, ge=100, le=60_000)
-    """Time from trigger to result; a later result is ERROR."""
-    result_ttl_ms: int = Field(default=10_000, ge=100, le=600_000)
-    """Time after which an unread result is cleared."""
-    stuck_ms: int = Field(default=5_000, ge=100, le=600_000)
-    """Time after which a bit that the PLC holds counts as stuck."""
-    plc_heartbeat_ms: int = Field(default=2_000, ge=0, le=60_000)
-    """Time within which PLC_HEARTBEAT must change; 0: not monitored."""
-
-    @model_validator(mode="after")
-    def _windows_apart(self) -> "PlcSettings":
-        command = range(self.command_base, self.command_base + COMMAND_WORDS)
-        status = range(self.status_base, self.status_base + STATUS_WORDS)
-        if command.start < status.stop and status.start < command.stop:
-            sizes = f"windows of {COMMAND_WORDS} and {STATUS_WORDS} registers overlap"
-            raise ValueError(f"command_base {command.start} and status_base {status.start}: {sizes}")
-        return self
 
 
 Days = Annotated[int, Field(ge=1, le=36500)]

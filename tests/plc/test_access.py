@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from station.errors import LineError
-from station.plc.wire.access import WriteRight, admitted
+from station.plc.wire.access import Access, WriteRight, admitted
 from station.plc.wire.modbus import ModbusClient, ModbusServer
 from station.plc.wire.peers import MAX_PEERS
 
@@ -81,7 +81,7 @@ def test_a_second_writer_is_refused_until_the_first_is_gone_or_silent() -> None:
         one.close()
         two.close()
 
-    serve(conversation, writer_idle_s=1.0)
+    serve(conversation, access=Access(writer_idle_s=1.0))
 
 
 def test_a_peer_that_is_not_on_the_list_is_turned_away() -> None:
@@ -92,7 +92,7 @@ def test_a_peer_that_is_not_on_the_list_is_turned_away() -> None:
             await client.read(0, 1)
         client.close()
 
-    serve(conversation, allow=(ip_network("192.0.2.0/24"),))
+    serve(conversation, access=Access(allow=(ip_network("192.0.2.0/24"),)))
 
 
 def test_connections_that_only_sit_there_make_room() -> None:

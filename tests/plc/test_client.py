@@ -12,12 +12,12 @@ import pytest
 from deploy.chaos.judge import WELL, Judge, judged
 from deploy.demo.ports import free_ports
 from station.plc.line import make_line
-from station.plc.map.registers import STATUS_START, STATUS_WORDS, Offline, VerdictCode
+from station.plc.map.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Offline, VerdictCode
 from station.plc.port import Result, Trigger
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.plc.simulated.windows import OwnWindows
 from station.plc.wire.modbus import ModbusServer
-from station.plc.wire.windows import RESULT_BITS, ClientWire
+from station.plc.wire.windows import RESULT_BITS, ClientWire, make_wire
 from station.settings.model import PlcSettings
 
 
@@ -220,6 +220,7 @@ def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
             ports,
             unit=1,
             bases=(0, STATUS_START),
+            command_function=3,
             poll_s=0.005,
             timeout_s=1.0,
             low_word_first=False,
@@ -243,3 +244,44 @@ def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
         await plc.stop()
 
     asyncio.run(publish_many())
+
+
+@pytest.mark.parametrize(
+    ("preset", "function", "command", "status"),
+    [("codesys", 4, 0, 0), ("twincat", 3, 12288, 12388), ("openplc", 3, 1024, 1124), ("tia", 3, 0, 100)],
+)
+def test_a_preset_reads_and_writes_where_the_tool_has_its_memory(
+    preset: str, function: int, command: int, status: int, ports: int
+) -> None:
+    """A PLC with two tables, as CODESYS has them: what it sends is read by function 4 alone."""
+    seen: list[tuple[int, int]] = []
+
+    async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        with suppress(asyncio.IncompleteReadError):
+            while True:
+                head = await reader.readexactly(6)
+                body = await reader.readexactly(int.from_bytes(head[4:], "big"))
+                seen.append((body[1], int.from_bytes(body[2:4], "big")))
+                words = b"" if body[1] == 16 else bytes(2 * int.from_bytes(body[4:6], "big"))
+                answer = body[:6] if body[1] == 16 else bytes([*body[:2], len(words)]) + words
+                writer.write(head[:4] + len(answer).to_bytes(2, "big") + answer)
+        writer.close()
+
+    async def run() -> None:
+        async with await asyncio.start_server(serve, "127.0.0.1", ports):
+            wire = make_wire(PlcSettings(mode="client", port=ports, preset=preset))  # type: ignore[arg-type]
+            assert len(await wire.read_command()) == COMMAND_WORDS
+            await wire.close()
+
+    asyncio.run(run())
+    assert (function, command) in seen
+    assert {entry for entry in seen if entry[0] == 16} == {(16, status), (16, status + 1)}
+
+
+def test_a_preset_fills_in_only_what_is_not_set() -> None:
+    settings = PlcSettings(mode="client", preset="openplc", command_base=1030)
+    assert (settings.command_base, settings.status_base, settings.command_function) == (1030, 1124, 3)
+    with pytest.raises(ValueError, match="only for mode"):
+        PlcSettings(preset="tia")
+    with pytest.raises(ValueError, match="codesys"):
+        PlcSettings.model_validate({"mode": "client", "preset": "step7"})

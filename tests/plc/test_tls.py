@@ -1,24 +1,33 @@
 """Modbus/TCP Security: both sides show a certificate, and who has none gets nothing."""
 
 import asyncio
+import socket
 import ssl
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ipaddress import IPv4Network
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from deploy.demo.ports import free_ports
 from station.__main__ import main
 from station.errors import LineError, SettingsError
-from station.plc.line import make_line
+from station.plc.line import ModbusLine, make_line
 from station.plc.map.registers import Offline
 from station.plc.port import Health
 from station.plc.simulated.line import SimulatedLine
 from station.plc.simulated.windows import RemoteWindows
 from station.plc.wire.certificates import make_certificates
 from station.plc.wire.modbus import ModbusClient
+from station.plc.wire.peers import MAX_HANDSHAKES
+from station.plc.wire.role import role_of
 from station.plc.wire.tls import client_context, server_context
 from station.settings.model import PlcSettings, TlsSettings
+from tests.plc.authority import Authority
 
 
 @pytest.fixture(scope="module")
@@ -71,8 +80,102 @@ def test_certificates_that_cannot_be_used_are_said_before_anything_runs(folder: 
     wrong = TlsSettings(
         certificate_path=folder / "server.pem", key_path=folder / "client.key", ca_path=folder / "ca.pem"
     )
-    with pytest.raises(SettingsError, match="certificate, key or authority cannot be used"):
+    with pytest.raises(SettingsError, match="certificate, key, authority or revocation list cannot be used"):
         make_line(PlcSettings(tls=wrong))
+
+
+@contextmanager
+def running(tls: TlsSettings, allow: tuple[IPv4Network, ...] = ()) -> Iterator[ModbusLine]:
+    line = make_line(PlcSettings(port=free_ports(1)[0], tls=tls, plc_heartbeat_ms=0, allow=allow))
+    line.start()
+    try:
+        yield line
+    finally:
+        line.stop()
+
+
+def connects(line: ModbusLine, tls: ssl.SSLContext) -> str:
+    """Return what a client gets: "written", "read" (it may not write), or "nothing"."""
+
+    async def run() -> str:
+        client = ModbusClient("127.0.0.1", line.port, timeout_s=5, tls=tls)
+        try:
+            await client.connect()
+            await client.read(0, 1)
+            try:
+                await client.write(0, [1])
+            except LineError:
+                return "read"
+            return "written"
+        except LineError:
+            return "nothing"
+        finally:
+            client.close()
+
+    return asyncio.run(run())
+
+
+@pytest.mark.parametrize(
+    ("changes", "side", "gets"),
+    [
+        ({}, "client", "written"),
+        ({}, "server", "nothing"),
+        ({"writer_role": "Operator"}, "client", "written"),
+        ({"writer_role": "Engineer"}, "client", "read"),
+    ],
+)
+def test_the_certificate_decides_who_connects_and_who_writes(
+    changes: dict[str, str], side: str, gets: str, folder: Path
+) -> None:
+    with running(settings(folder, "server").model_copy(update=changes)) as line:
+        assert connects(line, client_context(settings(folder, side))) == gets
+
+
+def test_a_certificate_without_a_use_passes_but_not_that_of_the_server_itself(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Certificates of a plant often name no use; then the server's own one would pass as a client's."""
+    plant = Authority(tmp_path / "plant")
+    station, plc = plant.issue("station"), plant.issue("plc")
+    with running(station) as line:
+        assert connects(line, client_context(plc)) == "written"
+        assert connects(line, client_context(station)) == "nothing"
+    assert "the client shows the server's own certificate" in caplog.text
+
+
+def test_a_revoked_certificate_is_refused(tmp_path: Path) -> None:
+    plant = Authority(tmp_path / "plant")
+    station, plc, old = (plant.issue(name) for name in ("station", "plc", "old"))
+    with running(station.model_copy(update={"crl_path": plant.revoke(old)})) as line:
+        assert connects(line, client_context(plc)) == "written"
+        assert connects(line, client_context(old)) == "nothing"
+
+
+def test_handshakes_that_never_end_make_room_and_strangers_get_none(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    def flooded(allow: tuple[IPv4Network, ...]) -> str:
+        with running(settings(folder, "server"), allow) as line:
+            address = ("127.0.0.1", line.port)
+            idle = [socket.create_connection(address) for _ in range(MAX_HANDSHAKES + 20)]
+            try:
+                return connects(line, client_context(settings(folder, "client")))
+            finally:
+                for peer in idle:
+                    peer.close()
+
+    assert flooded(()) == "written"
+    assert "did not finish its TLS handshake while others waited" in caplog.text
+    caplog.clear()
+    assert flooded((IPv4Network("192.0.2.0/24"),)) == "nothing"
+    assert "is not on the list plc.allow" in caplog.text
+    assert "TLS" not in caplog.text, "refused before any handshake"
+
+
+@given(st.binary(max_size=300))
+def test_noise_has_no_role(noise: bytes) -> None:
+    """A certificate is checked before its role is read; still nothing breaks the reading."""
+    assert role_of(noise) is None or b"\x0c" in noise
 
 
 def test_keys_are_for_their_owner_alone_and_nothing_is_written_over(

@@ -1,28 +1,50 @@
-"""Access to the Modbus server: which addresses may connect, who may write, and the log of closed connections.
+"""Access to the Modbus server: which addresses may connect, who may write, and the log about peers.
 
 One peer writes, the others read: the first connection that writes has the right to write until it closes or
 has not written for a while.
 """
 
+import asyncio
 import logging
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from ipaddress import IPv4Network, IPv6Network, ip_address
 
 log = logging.getLogger("weldgate.modbus")
 
 Network = IPv4Network | IPv6Network
 REPORT_EVERY_S = 10.0
-"""Shortest time between two log entries for the same peer and reason."""
+"""Shortest time between two log entries for the same peer and the same kind of complaint."""
 MAX_REMEMBERED = 1000
-"""Number of pairs of peer and reason that are remembered; at more, all are forgotten."""
+"""Number of pairs of peer and kind that are counted apart; the others are counted together."""
+OTHERS = "others"
+"""Peer under whose name further peers are counted."""
 
 
-def admitted(address: str, allow: Sequence[Network]) -> bool:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Access:
+    """What peers of the server may do."""
+
+    allow: Sequence[Network] = ()
+    """Networks that may connect; empty: all."""
+    writers: Sequence[Network] = ()
+    """Networks that may write; empty: all that may connect."""
+    writer_idle_s: float = float("inf")
+    """Time without a write after which another peer may take the right to write."""
+    writer_role: str | None = None
+    """Role that a writer's certificate must have; None: any."""
+
+
+EVERYBODY = Access()
+"""Access without limits."""
+
+
+def admitted(address: str, networks: Sequence[Network]) -> bool:
     """Return whether a peer's address is on the list; an empty list admits every address."""
     peer = ip_address(address.split("%")[0])
     mapped = getattr(peer, "ipv4_mapped", None)
-    return not allow or any((mapped or peer) in network for network in allow)
+    return not networks or any((mapped or peer) in network for network in networks)
 
 
 class WriteRight:
@@ -31,38 +53,65 @@ class WriteRight:
     def __init__(self, idle_s: float) -> None:
         """`idle_s`: time without a write after which another connection may take the right."""
         self._idle_s = idle_s
-        self._holder: int | None = None
+        self.holder: int | None = None
         self._wrote_s = 0.0
 
     def take(self, connection: int, now_s: float) -> bool:
         """Return whether `connection` may write now; each write of the holder renews its right."""
-        if self._holder not in (None, connection) and now_s - self._wrote_s <= self._idle_s:
+        if self.holder not in (None, connection) and now_s - self._wrote_s <= self._idle_s:
             return False
-        self._holder, self._wrote_s = connection, now_s
+        self.holder, self._wrote_s = connection, now_s
         return True
 
     def drop(self, connection: int) -> None:
         """Release the right of a connection that is closed."""
-        if self._holder == connection:
-            self._holder = None
+        if self.holder == connection:
+            self.holder = None
 
 
 class Complaints:
-    """Log of closed connections that is not flooded: repetitions are counted and reported now and then."""
+    """Log about peers that is not flooded: the first of a kind is logged at once, repetitions as a count.
+
+    Use from one loop.
+    """
 
     def __init__(self) -> None:
-        self._seen: dict[tuple[str, str], tuple[int, float]] = {}
-        """Number of unreported closures and monotonic time of the last report, by peer and reason."""
+        self._seen: dict[tuple[str, str], tuple[int, str]] = {}
+        """Number of unreported repetitions and the last detail, by peer and kind."""
+        self._next: asyncio.TimerHandle | None = None
+        self._reported_s = 0.0
 
-    def closed(self, name: str, why: str) -> None:
-        """Note that the connection of a peer was closed, and log it if it is time."""
-        now_s = time.monotonic()
-        unreported, reported_s = self._seen.get((name, why), (0, -REPORT_EVERY_S))
-        if now_s - reported_s < REPORT_EVERY_S:
-            self._seen[name, why] = unreported + 1, reported_s
-            return
-        repeated = f" ({unreported} more before)" if unreported else ""
-        log.warning("Modbus peer %s %s; connection closed%s", name, why, repeated)
-        if len(self._seen) > MAX_REMEMBERED:
-            self._seen.clear()
-        self._seen[name, why] = 0, now_s
+    def note(self, name: str, kind: str, detail: str = "") -> None:
+        """Note a complaint about a peer; `detail` may differ within a kind."""
+        key = (name, kind)
+        if key not in self._seen and len(self._seen) >= MAX_REMEMBERED:
+            key = (OTHERS, kind)
+        if key in self._seen:
+            self._seen[key] = self._seen[key][0] + 1, detail
+        else:
+            self._seen[key] = 0, detail
+            log.warning("Modbus peer %s %s%s", key[0], kind, f" ({detail})" if detail else "")
+        if self._next is None:
+            self._reported_s = time.monotonic()
+            self._next = asyncio.get_running_loop().call_later(REPORT_EVERY_S, self.report)
+
+    def report(self) -> None:
+        """Log the counts of what was repeated, and forget what was not."""
+        if self._next is not None:
+            self._next.cancel()
+            self._next = None
+        elapsed_s, self._reported_s = time.monotonic() - self._reported_s, time.monotonic()
+        repeated = {key: found for key, found in self._seen.items() if found[0]}
+        for (name, kind), (count, detail) in repeated.items():
+            last = f", the last: {detail}" if detail else ""
+            log.warning("Modbus peer %s %s: %d more in %.0f s%s", name, kind, count, elapsed_s, last)
+        self._seen = dict.fromkeys(repeated, (0, ""))
+        if repeated:
+            self._next = asyncio.get_running_loop().call_later(REPORT_EVERY_S, self.report)
+
+    def close(self) -> None:
+        """Log what was only counted so far, and end."""
+        self.report()
+        if self._next is not None:
+            self._next.cancel()
+            self._next = None

@@ -10,9 +10,8 @@ from ipaddress import ip_address
 from pathlib import Path
 
 from station.errors import SettingsError
+from station.plc.wire.role import ROLE_OID
 
-ROLE_OID = "1.3.6.1.4.1.50316.802.1"
-"""Object identifier of the role extension."""
 ROLE = "Operator"
 """Role in the client's certificate."""
 
@@ -26,7 +25,7 @@ def make_certificates(folder: Path, host: str, days: int) -> list[Path]:
         from cryptography import x509
         from cryptography.hazmat.primitives import hashes, serialization
         from cryptography.hazmat.primitives.asymmetric import ec
-        from cryptography.x509.oid import NameOID
+        from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
     except ImportError:
         raise SettingsError(
             "making certificates needs the package cryptography: pip install 'weldgate[tls]'"
@@ -67,18 +66,26 @@ def make_certificates(folder: Path, host: str, days: int) -> list[Path]:
         where: x509.GeneralName = x509.IPAddress(ip_address(host))
     except ValueError:
         where = x509.DNSName(host)
+    named = x509.SubjectAlternativeName([where])
     role = x509.UnrecognizedExtension(
         x509.ObjectIdentifier(ROLE_OID), bytes([0x0C, len(ROLE)]) + ROLE.encode()
     )
     no_authority = x509.BasicConstraints(ca=False, path_length=None)
+    serves, asks = (
+        x509.ExtendedKeyUsage([use])
+        for use in (ExtendedKeyUsageOID.SERVER_AUTH, ExtendedKeyUsageOID.CLIENT_AUTH)
+    )
     issued = [
         certificate(
             "weldgate trial authority", authority, authority, [x509.BasicConstraints(ca=True, path_length=0)]
         ),
         certificate(
-            "weldgate station", server, authority, [no_authority, x509.SubjectAlternativeName([where])]
+            "weldgate station",
+            server,
+            authority,
+            [no_authority, serves, named],
         ),
-        certificate("weldgate PLC", client, authority, [no_authority, role]),
+        certificate("weldgate PLC", client, authority, [no_authority, asks, role]),
     ]
     secrets = [
         key.private_bytes(

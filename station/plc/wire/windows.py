@@ -1,7 +1,10 @@
 """The two windows on the wire: in the station's memory (server) or in the memory of the PLC (client)."""
 
+import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from contextlib import suppress
+from ipaddress import ip_address
 from typing import Protocol
 
 from station.errors import LineError
@@ -14,10 +17,12 @@ from station.plc.map.registers import (
     Status,
     reordered,
 )
-from station.plc.wire.access import Network
+from station.plc.wire.access import Access
 from station.plc.wire.modbus import ModbusClient, ModbusServer
 from station.plc.wire.tls import Tls, client_context, server_context
 from station.settings.model import PlcSettings
+
+log = logging.getLogger("weldgate.line")
 
 RESULT_BITS = int(Status.RESULT_VALID | Status.OK | Status.NOK)
 """Bits of STATUS that show a result."""
@@ -68,12 +73,12 @@ class ServerWire:
         host: str,
         port: int,
         *,
-        allow: Sequence[Network],
-        writer_idle_s: float,
+        access: Access,
         low_word_first: bool,
         tls: Tls,
     ) -> None:
         self._low_word_first = low_word_first
+        self._open_to_all = not access.allow and not _loopback(host)
         self._wake: Callable[[], None] = lambda: None
         self._server = ModbusServer(
             host,
@@ -81,8 +86,7 @@ class ServerWire:
             words=STATUS_START + STATUS_WORDS,
             writable=range(COMMAND_START, COMMAND_START + COMMAND_WORDS),
             on_write=lambda: self._wake(),
-            allow=allow,
-            writer_idle_s=writer_idle_s,
+            access=access,
             tls=tls,
         )
 
@@ -95,6 +99,11 @@ class ServerWire:
         """Listen. Raises LineError if the port cannot be used."""
         self._wake = wake
         await self._server.start()
+        if self._open_to_all:
+            log.warning(
+                "plc.allow is empty: every machine that reaches %s may connect; name the PLC under plc.allow",
+                self._server.host,
+            )
 
     async def close(self) -> None:
         """Set all registers to 0 and stop."""
@@ -125,15 +134,20 @@ class ClientWire:
         *,
         unit: int,
         bases: tuple[int, int],
+        command_function: int,
         poll_s: float,
         timeout_s: float,
         low_word_first: bool,
         tls: Tls,
     ) -> None:
-        """`bases`: addresses of the command window and of the status window in the PLC."""
+        """`bases`: addresses of the command window and of the status window in the PLC.
+
+        `command_function`: function that reads the command window, 3 or 4.
+        """
         self._client = ModbusClient(host, port, unit=unit, timeout_s=timeout_s, tls=tls)
         self.port, self.tick_s = port, poll_s
         self._command_base, self._status_base = bases
+        self._command_function = command_function
         self._low_word_first = low_word_first
         self._written: list[int] | None = None
         """Status window as the PLC has it; None if unknown."""
@@ -158,7 +172,7 @@ class ClientWire:
         if not self._connected:
             await self._connect()
         try:
-            words = await self._client.read(self._command_base, COMMAND_WORDS)
+            words = await self._client.read(self._command_base, COMMAND_WORDS, self._command_function)
         except LineError:
             self._lost()
             raise
@@ -216,6 +230,12 @@ class ClientWire:
         await self._client.write(self._status_base + 1, words[1:])
 
 
+def _loopback(host: str) -> bool:
+    with suppress(ValueError):
+        return ip_address(host).is_loopback
+    return host == "localhost"
+
+
 def _without_age(words: list[int]) -> list[int]:
     return [*words[:AGE], *words[AGE + 1 :]]
 
@@ -226,8 +246,12 @@ def make_wire(settings: PlcSettings) -> Wire:
         return ServerWire(
             settings.host,
             settings.port,
-            allow=settings.allow,
-            writer_idle_s=settings.writer_idle_ms / 1000,
+            access=Access(
+                allow=settings.allow,
+                writers=settings.writers,
+                writer_idle_s=settings.writer_idle_ms / 1000,
+                writer_role=None if settings.tls is None else settings.tls.writer_role,
+            ),
             low_word_first=settings.low_word_first,
             tls=None if settings.tls is None else server_context(settings.tls),
         )
@@ -236,6 +260,7 @@ def make_wire(settings: PlcSettings) -> Wire:
         settings.port,
         unit=settings.unit,
         bases=(settings.command_base, settings.status_base),
+        command_function=settings.command_function,
         poll_s=settings.poll_ms / 1000,
         timeout_s=settings.timeout_ms / 1000,
         low_word_first=settings.low_word_first,
