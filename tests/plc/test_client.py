@@ -257,7 +257,7 @@ def test_a_preset_reads_and_writes_where_the_tool_has_its_memory(
     seen: list[tuple[int, int]] = []
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        with suppress(asyncio.IncompleteReadError):
+        with suppress(asyncio.IncompleteReadError, ConnectionError):
             while True:
                 head = await reader.readexactly(6)
                 body = await reader.readexactly(int.from_bytes(head[4:], "big"))
@@ -266,13 +266,18 @@ def test_a_preset_reads_and_writes_where_the_tool_has_its_memory(
                 answer = body[:6] if body[1] == 16 else bytes([*body[:2], len(words)]) + words
                 writer.write(head[:4] + len(answer).to_bytes(2, "big") + answer)
         writer.close()
+        with suppress(ConnectionError):
+            await writer.wait_closed()
+        ended.set()
 
     async def run() -> None:
         async with await asyncio.start_server(serve, "127.0.0.1", ports):
             wire = make_wire(PlcSettings(mode="client", port=ports, preset=preset))  # type: ignore[arg-type]
             assert len(await wire.read_command()) == COMMAND_WORDS
             await wire.close()
+            await ended.wait()
 
+    ended = asyncio.Event()
     asyncio.run(run())
     assert (function, command) in seen
     assert {entry for entry in seen if entry[0] == 16} == {(16, status), (16, status + 1)}
