@@ -10,32 +10,32 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-import cv2
-import numpy as np
 from rich.console import Console
 
+from deploy.demo.alone import stand_alone
 from deploy.demo.ports import free_ports
-from deploy.demo.station import SERIAL, running, shipped_parts, station_toml
+from deploy.demo.stage import Stage, has_display, last_line, staged
+from deploy.demo.station import running, shipped_parts, station_toml
 from deploy.demo.summary import DemoPart, Judged, count, print_part, summarise, write_json
 from station.errors import LineError, WeldgateError
 from station.files.destination import find_destination, output_path, standard_output_free
 from station.files.installation import room_command
 from station.numbers import number_option, whole_option
 from station.plc.simulated.line import SimulatedLine
-from synth.camera.feed import Feed
 from synth.errors import SynthError
 
 RENDER_PATIENCE_S = 120.0
+"""Maximum time to wait for one rendered part."""
 DEADLINE_MS = 8000
 """Time for a part: the demo is to judge on any machine, not to be fast."""
-"""Maximum time to wait for one rendered part."""
+ALONE_DEADLINE_MS = 3000
+"""Time for a part of a PLC, whose block waits 4 s."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -73,6 +73,24 @@ def main(argv: Sequence[str] | None = None) -> int:
         metavar="S",
         help="seconds between parts (default: 2 with a window, no pause without)",
     )
+    parser.add_argument(
+        "--station",
+        action="store_true",
+        help="run the station alone, to try a PLC against, until Ctrl-C: a new picture at each trigger",
+    )
+    parser.add_argument(
+        "--host",
+        default="127.0.0.1",
+        help="with --station: own address; 0.0.0.0 for all networks (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--port",
+        type=whole_option,
+        choices=range(1, 65536),
+        default=1502,
+        metavar="PORT",
+        help="with --station: TCP port for the PLC (default: %(default)s)",
+    )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
         parser.error("--parts must be at least 1")
@@ -86,7 +104,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
         with standard_output_free([arguments.json]):
-            return _run(arguments, Console())
+            console = Console()
+            return _run_alone(arguments, console) if arguments.station else _run(arguments, console)
     except (WeldgateError, SynthError, OSError) as error:
         print(f"weldgate-demo: {error}", file=sys.stderr)
         return 2
@@ -95,31 +114,15 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: argparse.Namespace, console: Console) -> int:
-    window = not arguments.headless and _has_display()
+    window = not arguments.headless and has_display()
     pace_s = arguments.pace or (2.0 if window else 0.0)
-    records = arguments.records.resolve()
+    records, ports = arguments.records.resolve(), free_ports(4)
     with ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="weldgate-")))
-        feed = Feed(folder / "feed", SERIAL)
-        ports = free_ports(4)
-        settings = folder / "station.toml"
-        settings.write_text(station_toml(records, *ports, deadline_ms=DEADLINE_MS))
-        log = stack.enter_context((folder / "engine.log").open("w"))
+        settings = station_toml(records, *ports, deadline_ms=DEADLINE_MS)
+        stage = stack.enter_context(staged(settings, window, console))
+        folder = stage.folder
         fresh = max(0, arguments.parts - len(shipped_parts()))
         renderer = stack.enter_context(_renderer(folder / "fresh", fresh, arguments.seed)) if fresh else None
-        environment = {**os.environ, **feed.environment}
-        engine = stack.enter_context(
-            running([*room_command("station"), "engine", "-c", str(settings)], environment, log)
-        )
-        if window:
-            panel_log = stack.enter_context((folder / "panel.log").open("w"))
-            panel = stack.enter_context(
-                running([*room_command("station"), "panel", "-c", str(settings)], dict(os.environ), panel_log)
-            )
-            time.sleep(1.0)
-            if panel.poll() is not None:
-                reason = _last_line(folder / "panel.log")
-                console.print(f"[yellow]window could not be opened, continuing without it: {reason}[/]")
         stopping = threading.Event()
         parts = _parts(
             arguments.parts, folder / "fresh", renderer=renderer, console=console, stopping=stopping
@@ -127,11 +130,9 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
         judged = asyncio.run(
             _drive(
                 ports[0],
-                feed,
+                stage,
                 parts,
                 stopping=stopping,
-                engine=engine,
-                log=folder / "engine.log",
                 pace_s=pace_s,
                 console=console,
             )
@@ -142,10 +143,21 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
     return 0 if count(judged).good and len(judged) == arguments.parts else 1
 
 
-def _has_display() -> bool:
-    return sys.platform in ("win32", "darwin") or bool(
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+def _run_alone(arguments: argparse.Namespace, console: Console) -> int:
+    """Run the station without a line; Ctrl-C is its proper end."""
+    settings = station_toml(
+        arguments.records.resolve(),
+        arguments.port,
+        *free_ports(3),
+        host=arguments.host,
+        deadline_ms=ALONE_DEADLINE_MS,
     )
+    try:
+        with staged(settings, not arguments.headless and has_display(), console) as stage:
+            asyncio.run(stand_alone(stage, arguments.host, arguments.port, console))
+    except KeyboardInterrupt:
+        console.print("the station has ended")
+    return 0
 
 
 @contextmanager
@@ -196,12 +208,10 @@ def _bar(done: int, total: int) -> str:
 
 async def _drive(
     port: int,
-    feed: Feed,
+    stage: Stage,
     parts: Iterator[DemoPart],
     *,
     stopping: threading.Event,
-    engine: "subprocess.Popen[bytes]",
-    log: Path,
     pace_s: float,
     console: Console,
 ) -> list[Judged]:
@@ -210,15 +220,11 @@ async def _drive(
     try:
         up = False
         while (part := await line.meanwhile(asyncio.to_thread(next, parts, None))) is not None:
-            image = cv2.imread(str(part.path), cv2.IMREAD_GRAYSCALE)
-            if image is None:
-                raise SynthError(f"{part.path}: not a readable image; restore it from the repository")
-            feed.show(np.asarray(image, np.uint8))
+            stage.show(part)
             if not up:
-                await _bring_up(line, engine, log)
+                await _bring_up(line, stage)
                 up = True
-            if engine.poll() is not None:
-                raise WeldgateError(f"the engine stopped: {_last_line(log)}")
+            stage.check()
             judged.append(Judged(part, await line.inspect(part.name, DEADLINE_MS / 1000 + 2)))
             print_part(judged, console)
             await line.meanwhile(asyncio.sleep(pace_s))
@@ -228,23 +234,18 @@ async def _drive(
     return judged
 
 
-async def _bring_up(line: SimulatedLine, engine: "subprocess.Popen[bytes]", log: Path) -> None:
+async def _bring_up(line: SimulatedLine, stage: Stage) -> None:
     until = time.monotonic() + 30.0
     while True:
         try:
             await line.connect(timeout_s=0.0)
             break
         except LineError:
-            if engine.poll() is not None or time.monotonic() > until:
-                raise WeldgateError(f"the engine did not start: {_last_line(log)}") from None
+            if stage.engine.poll() is not None or time.monotonic() > until:
+                raise WeldgateError(f"the engine did not start: {last_line(stage.log)}") from None
             await asyncio.sleep(0.1)
     if not await line.wait_ready(15.0):
-        raise WeldgateError(f"the engine did not become ready: {_last_line(log)}")
-
-
-def _last_line(log: Path) -> str:
-    lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
-    return lines[-1] if lines else "its log is empty"
+        raise WeldgateError(f"the engine did not become ready: {last_line(stage.log)}")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,11 @@
 """The commands as a user types them, in processes of their own."""
 
 import argparse
+import asyncio
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -18,6 +20,7 @@ from station.archive.reader import read_records
 from station.channel.events import StatusEvent
 from station.channel.zeromq import Subscriber
 from station.plc.map.registers import Offline
+from station.plc.simulated.line import SimulatedLine
 from station.settings.model import ChannelSettings
 from tests.conftest import MODEL, RING_MODEL, ROOT, SEEN_MODEL
 from tests.parts import FRAMES, labels
@@ -216,3 +219,40 @@ def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> No
         _, errors = engine.communicate(timeout=600)
     assert engine.returncode == 0, errors
     assert "Traceback" not in errors
+
+
+def test_the_station_of_the_demo_stays_up_for_a_plc(
+    tmp_path: Path,
+) -> None:
+    """It has no line of its own, says what the block needs, and ends with Ctrl-C as it should."""
+    port, truths = free_ports(1)[0], [item["truth"] for item in labels()][:4]
+    command = [sys.executable, "-m", "deploy.demo.run", "--station", "--headless", "--port", str(port)]
+    station = subprocess.Popen(
+        [*command, "--records", str(tmp_path / "records")], cwd=ROOT, stdout=subprocess.PIPE, text=True
+    )
+
+    async def conversation() -> list[bool]:
+        line = SimulatedLine.at("127.0.0.1", port, accept_simulated=True)
+        await line.connect(120.0)
+        try:
+            assert await line.wait_ready(120.0)
+            accepted = []
+            for number in range(len(truths)):
+                accepted.append((await line.inspect(f"TRY-{number}", 10.0)).accepted)
+                await line.meanwhile(asyncio.sleep(0.2))
+            return accepted
+        finally:
+            await line.close()
+
+    try:
+        accepted = asyncio.run(conversation())
+        assert station.poll() is None, "it stays up"
+        station.send_signal(signal.SIGINT)
+        out, _ = station.communicate(timeout=120)
+    finally:
+        station.kill()
+        station.wait()
+    assert accepted == [truth == "OK" for truth in truths]
+    assert station.returncode == 0, out
+    assert "AcceptSimulated := TRUE" in out
+    assert [row for row in out.splitlines() if "serial TRY-" in row][-1].split()[1] == "4"

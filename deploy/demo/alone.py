@@ -1,0 +1,102 @@
+"""`weldgate-demo --station`: a station to try a PLC against, with a new picture at each trigger.
+
+It has no line of its own. It watches its own status window as one more reader, so that the next part lies
+there as soon as the picture of the one before is taken.
+"""
+
+import asyncio
+import itertools
+import time
+from collections.abc import Iterator
+
+from rich.console import Console
+
+from deploy.demo.stage import Stage, last_line
+from deploy.demo.station import shipped_parts
+from deploy.demo.summary import DemoPart
+from station.errors import LineError, WeldgateError
+from station.plc.map.registers import (
+    STATUS_START,
+    STATUS_WORDS,
+    Status,
+    Value,
+    VerdictCode,
+    named_bits,
+    number,
+    unpack_window,
+)
+from station.plc.wire.modbus import ModbusClient
+
+POLL_S = 0.01
+START_S = 45.0
+"""Time within which the station must be up."""
+
+
+def hints(host: str, port: int) -> str:
+    """Return what an integrator must know before the first part."""
+    return (
+        f"station on {host}, port {port}: the PLC connects to it (Modbus TCP, any unit id)\n"
+        "  command window: registers 0 to 22, status window: from 100; the first hour: deploy/plc/README.md\n"
+        "  block: set AcceptSimulated := TRUE, or each part is refused with 12 (emulated camera)\n"
+        "  block: copy CONFIG_CRC (register 112) to Crc, or each part is refused with 9\n"
+        "a new part lies in front of the camera at each trigger; Ctrl-C ends"
+    )
+
+
+async def stand_alone(stage: Stage, host: str, port: int, console: Console) -> None:
+    """Show a new part at each trigger until cancelled. Raises WeldgateError if the engine stops."""
+    parts = itertools.cycle(shipped_parts())
+    part = next(parts)
+    stage.show(part)
+    client = ModbusClient("127.0.0.1" if host in ("0.0.0.0", "::") else host, port)
+    try:
+        await _connect(client, stage)
+        console.print(hints(host, port), highlight=False)
+        await _watch(client, stage, part, parts=parts, console=console)
+    finally:
+        client.close()
+
+
+async def _connect(client: ModbusClient, stage: Stage) -> None:
+    until = time.monotonic() + START_S
+    while True:
+        try:
+            await client.connect()
+            return
+        except LineError:
+            stage.check()
+            if time.monotonic() > until:
+                raise WeldgateError(f"the engine did not start: {last_line(stage.log)}") from None
+            await asyncio.sleep(0.2)
+
+
+async def _watch(
+    client: ModbusClient, stage: Stage, part: DemoPart, *, parts: Iterator[DemoPart], console: Console
+) -> None:
+    """Show the next part as soon as a trigger's picture is taken, and print each result."""
+    taken, printed, in_work = -1, 0, part
+    while True:
+        stage.check()
+        try:
+            values = unpack_window(STATUS_START, await client.read(STATUS_START, STATUS_WORDS))
+        except LineError:
+            await _connect(client, stage)
+            continue
+        status, trigger = named_bits(Status, number(values, "STATUS")), number(values, "ACK_TRIGGER_ID")
+        if taken < 0:
+            taken = printed = trigger
+        over = status & (Status.EXPOSURE_DONE | Status.RESULT_VALID) or not status & Status.BUSY
+        if trigger != taken and over:
+            taken, in_work, part = trigger, part, next(parts)
+            stage.show(part)
+        shown = Status.RESULT_VALID in status and number(values, "RESULT_TRIGGER_ID") == taken
+        if shown and printed != taken:
+            printed = taken
+            console.print(_row(values, in_work), highlight=False)
+        await asyncio.sleep(POLL_S)
+
+
+def _row(values: dict[str, Value], part: DemoPart) -> str:
+    verdict = VerdictCode(number(values, "VERDICT")).name
+    trigger, serial = number(values, "RESULT_TRIGGER_ID"), values["SERIAL_ECHO"]
+    return f"trigger {trigger:5d}  {verdict:5}  truth {part.truth:12}  serial {serial}".rstrip()
