@@ -70,6 +70,9 @@ docs: $(VENV)/.docs ## build the documentation as a site that needs no network, 
 
 registers: $(VENV)/.demo ## write the register map and the PLC block in all forms to deploy/plc
 	$(BIN)/weldgate registers --format md > deploy/plc/register_map.md
+	$(BIN)/weldgate registers --format block > deploy/plc/block.md
+	$(BIN)/weldgate registers --format plcopen > deploy/plc/weldgate_plcopen.xml
+	$(BIN)/weldgate registers --format openplc > deploy/plc/weldgate_openplc.st
 	$(BIN)/weldgate registers --format st > deploy/plc/weldgate.st
 	$(BIN)/weldgate registers --format scl > deploy/plc/weldgate.scl
 	$(BIN)/weldgate registers --format symbols > deploy/plc/weldgate_symbols.csv

@@ -132,11 +132,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     registers.add_argument(
         "--format",
-        choices=("md", "csv", "st", "scl", "symbols"),
+        choices=("md", "csv", "block", "st", "scl", "plcopen", "openplc", "symbols"),
         default="md",
         help=(
-            "choose the output: md or csv for the map, st for the block in IEC 61131-3 Structured Text, "
-            "scl for TIA Portal, symbols for EcoStruxure (default: %(default)s)"
+            "choose the output: md or csv for the map, block for the inputs and outputs of the block, st for "
+            "the block in IEC 61131-3 Structured Text, scl for TIA Portal, plcopen for CODESYS and TwinCAT "
+            "(PLCopen XML), openplc for OpenPLC, symbols for EcoStruxure (default: %(default)s)"
         ),
     )
     line = add("line", _line, "run a simulated line with its PLC against a station", settings=False)
@@ -222,9 +223,21 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _registers(arguments: argparse.Namespace) -> int:
     from station.plc.block.dialects import scl, structured_text, symbols
+    from station.plc.block.document import block_page
+    from station.plc.block.openplc import openplc
+    from station.plc.block.plcopen import plcopen
     from station.plc.map.document import as_csv, as_markdown
 
-    forms = {"md": as_markdown, "csv": as_csv, "st": structured_text, "scl": scl, "symbols": symbols}
+    forms = {
+        "md": as_markdown,
+        "csv": as_csv,
+        "block": block_page,
+        "st": structured_text,
+        "scl": scl,
+        "plcopen": plcopen,
+        "openplc": openplc,
+        "symbols": symbols,
+    }
     print(forms[arguments.format](), end="")
     return 0
 

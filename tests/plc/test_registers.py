@@ -84,6 +84,9 @@ def test_a_window_of_zeros_says_no_verdict() -> None:
     ("form", "name"),
     [
         ("md", "register_map.md"),
+        ("block", "block.md"),
+        ("plcopen", "weldgate_plcopen.xml"),
+        ("openplc", "weldgate_openplc.st"),
         ("st", "weldgate.st"),
         ("scl", "weldgate.scl"),
         ("symbols", "weldgate_symbols.csv"),

@@ -1,6 +1,7 @@
 """Prints the definition for PLC tools.
 
-IEC 61131-3 ST is for CODESYS, TwinCAT and OpenPLC, SCL for TIA Portal, the CSV symbols for EcoStruxure.
+IEC 61131-3 ST is for all tools that take text, SCL for TIA Portal, the CSV symbols for EcoStruxure. `openplc`
+and `plcopen` print it with a program around it.
 """
 
 import re
@@ -26,8 +27,8 @@ def structured_text() -> str:
         text += f"TYPE {record} :\nSTRUCT\n{inside}END_STRUCT;\nEND_TYPE\n\n"
     text += f"{_refusals()}FUNCTION_BLOCK {NAME}\n"
     for role, section in SECTIONS:
-        declared = [_declared(each, each.type) for each in VARIABLES if each.role == role]
-        text += f"{section}\n{''.join(declared)}END_VAR\n"
+        inside = "".join(declared(each, each.type) for each in VARIABLES if each.role == role)
+        text += f"{section}\n{inside}END_VAR\n"
     return f"{text}\n{body()}END_FUNCTION_BLOCK\n"
 
 
@@ -41,8 +42,10 @@ def scl() -> str:
         text += f'TYPE "{record}"\nVERSION : 0.1\n    STRUCT\n{inside}    END_STRUCT;\n\nEND_TYPE\n\n'
     text += f"{_refusals()}FUNCTION_BLOCK \"{NAME}\"\n{{ S7_Optimized_Access := 'FALSE' }}\nVERSION : 0.1\n"
     for role, section in SECTIONS:
-        declared = [f"    {_declared(each, _scl_type(each.type))}" for each in VARIABLES if each.role == role]
-        text += f"    {section}\n{''.join(declared)}    END_VAR\n\n"
+        inside = "".join(
+            f"    {declared(each, _scl_type(each.type))}" for each in VARIABLES if each.role == role
+        )
+        text += f"    {section}\n{inside}    END_VAR\n\n"
     names = "|".join(variable.name for variable in VARIABLES)
     marked = re.sub(rf"(?<![\w.#])({names})\b(?=\W)", r"#\1", _uncommented(body()))
     return f"{text}BEGIN\n{marked}END_FUNCTION_BLOCK\n"
@@ -63,7 +66,8 @@ def _symbol_type(register: Register) -> str:
     return plain if count == 1 else f"ARRAY[0..{count - 1}] OF {plain}"
 
 
-def _declared(variable: Variable, kind: str) -> str:
+def declared(variable: Variable, kind: str) -> str:
+    """Return the declaration of a variable with its type in a dialect."""
     initial = f" := {variable.initial}" if variable.initial else ""
     return f"    {variable.name} : {kind}{initial};{_comment(variable.meaning)}\n"
 

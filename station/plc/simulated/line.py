@@ -109,9 +109,18 @@ class SimulatedLine:
         self._faults: frozenset[Fault] = frozenset()
 
     @staticmethod
-    def at(host: str, port: int, accept_simulated: bool, seed: int = 0) -> "SimulatedLine":
+    def at(
+        host: str,
+        port: int,
+        accept_simulated: bool,
+        *,
+        seed: int = 0,
+        poll_s: float = POLL_S,
+        timers: TimerKind = TimerKind.CALL,
+    ) -> "SimulatedLine":
         """Return a line whose PLC is the client of the station at an address."""
-        return SimulatedLine(RemoteWindows(lambda: ModbusClient(host, port)), accept_simulated, seed=seed)
+        windows = RemoteWindows(lambda: ModbusClient(host, port))
+        return SimulatedLine(windows, accept_simulated, seed=seed, poll_s=poll_s, timers=timers)
 
     async def connect(self, timeout_s: float = 30.0) -> None:
         """Connect; wait for a station that is still starting. Raises LineError."""
