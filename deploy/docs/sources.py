@@ -17,6 +17,7 @@ from deploy.docs.rooms import PACKAGES
 HERE = PurePosixPath("deploy/docs")
 ELSEWHERE = {
     "deploy/plc/README.md": "plc/index.md",
+    "deploy/plc/block.md": "plc/block.md",
     "deploy/plc/register_map.md": "plc/register-map.md",
     "deploy/records.md": "records.md",
     "models/shipped/CARD.md": "networks/classifier.md",
@@ -27,7 +28,7 @@ ELSEWHERE = {
 """Pages that lie elsewhere in the repository, because tools or people look for them there."""
 NAVIGATION = (
     ("Begin", ("tutorial", "window", "commands", "glossary")),
-    ("Integrate", ("plc/index", "plc/register-map", "troubleshooting", "records")),
+    ("Integrate", ("plc/index", "integrator", "plc/block", "plc/register-map", "troubleshooting", "records")),
     ("Understand", ("architecture", "rooms", "decisions/index", "networks/classifier", "networks/ring")),
     ("Change", ("how-to/index", "contributing", "api/index", "changelog")),
 )

@@ -12,7 +12,7 @@ from station.plc.block.advice import ADVICE
 from station.plc.block.data_types import ARRAYS, RECORDS
 from station.plc.block.definition import NAME, REFUSALS, VARIABLES
 from station.plc.block.document import block_page
-from station.plc.block.example import INPUTS, OUTPUTS, PROGRAM, statements
+from station.plc.block.example import INPUTS, LOCALS, OUTPUTS, PROGRAM, statements
 from station.plc.block.openplc import openplc
 from station.plc.block.plcopen import NAMESPACE, XHTML, plcopen
 from station.plc.block.statements import body
@@ -22,6 +22,13 @@ from station.settings.plc import PRESETS
 from tests.plc.test_controllers import Station
 
 IN = {"": NAMESPACE, "x": XHTML}
+RESERVED = frozenset(
+    "ACTION ARRAY AT BY CASE CONFIGURATION CONSTANT DO ELSE ELSIF EN ENO END_STEP EXIT FINAL FOR FROM "
+    "FUNCTION IF INITIAL_STEP INTERVAL LIMIT MAX MIN MOD MUX N NOT OF ON OR P PRIORITY PROGRAM R READ_ONLY "
+    "REPEAT RESOURCE RETAIN RETURN S SEL SINGLE STEP STRUCT TASK THEN TO TON TRANSITION TYPE UNTIL VAR WHILE "
+    "WITH XOR".split()
+)
+"""Words that no name may be, in whatever case: matiec refuses a variable named Step."""
 OPENPLC_BASE = 1024
 """Holding register of %MW0 in OpenPLC's Modbus server."""
 
@@ -56,6 +63,14 @@ def test_openplc_ties_every_word_of_both_windows_to_the_memory_that_its_preset_n
     assert not parser.parse(text.encode()).root_node.has_error
 
 
+def test_no_name_is_a_word_of_the_language() -> None:
+    variables = (*VARIABLES, *INPUTS, *OUTPUTS, *LOCALS)
+    fields = [field.name for record in RECORDS.values() for field in record]
+    names = [*(each.name for each in variables), *fields, *RECORDS, *ARRAYS]
+    names = [name.upper() for name in names]
+    assert not RESERVED.intersection(names)
+
+
 def test_the_page_explains_every_input_output_refusal_and_field() -> None:
     page = block_page()
     for each in VARIABLES:
@@ -88,7 +103,7 @@ def test_the_example_lets_out_good_parts_alone() -> None:
     station, called = Station(random.Random(6)), Called()
     initial = {each.name: 0 for each in (*INPUTS, *OUTPUTS)}
     v = SimpleNamespace(
-        **initial, Window=[0] * STATUS_WORDS, Serial=[0] * 16, Fresh=True, Step=0, Start=False
+        **initial, Window=[0] * STATUS_WORDS, Serial=[0] * 16, Fresh=True, Stage=0, Start=False
     )
     v.Released, v.Demonstration, v.Station, v.Command = 77, False, called, [0] * COMMAND_WORDS
     good, bad = 0, 0
@@ -96,16 +111,16 @@ def test_the_example_lets_out_good_parts_alone() -> None:
         now_s += 0.01
         station.cycle(now_s, v.Command)
         v.Window = list(station.words)
-        if v.Step == 0:
+        if v.Stage == 0:
             v.PartThere, v.Reset, v.Serial = rng.random() < 0.3, False, [rng.randrange(0x10000)] * 16
-        elif v.Step == 30 or (v.Step == 40 and rng.random() < 0.1):
-            v.PartThere, v.Reset = False, v.Step == 40
-        before = v.Step
+        elif v.Stage == 30 or (v.Stage == 40 and rng.random() < 0.1):
+            v.PartThere, v.Reset = False, v.Stage == 40
+        before = v.Stage
         exec(code, {"v": v, "now_s": now_s})
-        if before == 20 and v.Step == 30:
+        if before == 20 and v.Stage == 30:
             assert station.truth[called.TriggerId] == (True, v.Serial)
             good += 1
-        bad += before == 20 and v.Step == 40
-        assert v.GoodOut == (v.Step == 30)
+        bad += before == 20 and v.Stage == 40
+        assert v.GoodOut == (v.Stage == 30)
     assert good > 100
     assert bad > 30

@@ -11,7 +11,7 @@ PROGRAM = "WeldgateExample"
 STEPS = "0 empty, 10 wait until the station is ready, 20 in work, 30 good part out, 40 bad part out"
 INPUTS: tuple[Variable, ...] = (
     Variable("input", "PartThere", "BOOL", "a part lies in the nest"),
-    Variable("input", "Reset", "BOOL", "the bad part was taken out by hand"),
+    Variable("input", "Reset", "BOOL", "the bad part was removed by hand"),
     Variable("input", "Released", "WORD", "CONFIG_CRC of the released settings, read once from register 112"),
 )
 """Inputs of the program."""
@@ -27,7 +27,7 @@ LOCALS: tuple[Variable, ...] = (
     Variable("local", "Serial", SERIAL.name, "serial of the part, from the reader"),
     Variable("local", "Fresh", "BOOL", "TRUE: every call counts as a new read", initial="TRUE"),
     Variable("local", "Demonstration", "BOOL", "TRUE at a station without a camera, never in production"),
-    Variable("local", "Step", "UINT", STEPS),
+    Variable("local", "Stage", "UINT", STEPS),
     Variable("local", "Start", "BOOL", ""),
     Variable("local", "Station", NAME, ""),
 )
@@ -43,16 +43,16 @@ Station(Window := Window, Fresh := Fresh, Start := Start, Serial := Serial, Crc 
 Command := Station.Command;
 
 (* {STEPS} *)
-CASE Step OF
+CASE Stage OF
 0:
     Start := FALSE; (* Start rests between two parts *)
     IF PartThere THEN
-        Step := 10;
+        Stage := 10;
     END_IF;
 10:
     IF Station.Ready THEN
         Start := TRUE;
-        Step := 20;
+        Stage := 20;
     END_IF;
 20:
     IF Station.PartDone THEN (* for one call; PartOk counts in this call alone *)
@@ -60,21 +60,21 @@ CASE Step OF
         Why := Station.Refusal;
         IF Station.PartOk THEN
             GoodOut := TRUE;
-            Step := 30;
+            Stage := 30;
         ELSE
             BadOut := TRUE;
-            Step := 40;
+            Stage := 40;
         END_IF;
     END_IF;
 30:
     IF NOT PartThere THEN
         GoodOut := FALSE;
-        Step := 0;
+        Stage := 0;
     END_IF;
 40:
     IF Reset AND NOT PartThere THEN
         BadOut := FALSE;
-        Step := 0;
+        Stage := 0;
     END_IF;
 END_CASE;
 """

@@ -35,14 +35,14 @@ def plcopen() -> str:
         base = SubElement(SubElement(data_types, "dataType", name=record), "baseType")
         _record(SubElement(base, "struct"), fields)
     pous = SubElement(types, "pous")
-    _pou(pous, NAME, "functionBlock", VARIABLES, body())
-    _pou(pous, PROGRAM, "program", (*INPUTS, *OUTPUTS, *LOCALS), statements())
+    _pou(pous, NAME, "functionBlock", variables=VARIABLES, text=body())
+    _pou(pous, PROGRAM, "program", variables=(*INPUTS, *OUTPUTS, *LOCALS), text=statements())
     SubElement(SubElement(project, "instances"), "configurations")
     indent(project)
     return f'<?xml version="1.0" encoding="utf-8"?>\n{tostring(project, encoding="unicode")}\n'
 
 
-def _pou(pous: Element, name: str, kind: str, variables: Iterable[Variable], text: str) -> None:
+def _pou(pous: Element, name: str, kind: str, *, variables: Iterable[Variable], text: str) -> None:
     pou = SubElement(pous, "pou", name=name, pouType=kind)
     interface = SubElement(pou, "interface")
     for role, section in SECTIONS.items():
