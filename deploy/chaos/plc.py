@@ -23,11 +23,12 @@ from deploy.demo.ports import free_ports
 from station.domain import SEGMENTS
 from station.errors import WeldgateError
 from station.numbers import whole_option
+from station.plc.block.timers import TimerKind
 from station.plc.line import make_line
 from station.plc.map.registers import VerdictCode
 from station.plc.port import Result, Trigger
-from station.plc.simulated.line import Answer, Fault, SimulatedLine
-from station.plc.simulated.windows import OwnWindows
+from station.plc.simulated.line import POLL_S, Answer, Fault, SimulatedLine
+from station.plc.simulated.windows import OwnWindows, RemoteWindows, Windows
 from station.settings.model import PlcSettings
 
 MODES = ("server", "client")
@@ -105,7 +106,20 @@ class Truths:
         return replace(result, reason=reason, error_code=error, seg_scores=(100,) * SEGMENTS)
 
 
-def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Controller:
+    """The simulated controller."""
+
+    poll_ms: int | None = None
+    """Time between two cycles; None: as fast as it can."""
+    timers: TimerKind = TimerKind.CALL
+
+
+FAST = Controller()
+"""Controller without a pause between two cycles, with the timers of the standard."""
+
+
+def run(mode: str, parts: int, seed: int, controller: Controller = FAST, *, progress: bool = False) -> Report:
     """Pass parts through one mode with random faults, and return the report. Raises LineError."""
     settings = PlcSettings(
         mode="server" if mode == "server" else "client",
@@ -121,10 +135,12 @@ def run(mode: str, parts: int, seed: int, progress: bool = False) -> Report:
     line = make_line(settings)
     if mode == "server":
         line.start()
-        plc = SimulatedLine.at("127.0.0.1", line.port, accept_simulated=False, seed=seed)
+        windows: Windows = RemoteWindows.at("127.0.0.1", line.port)
     else:
-        plc = SimulatedLine(OwnWindows("127.0.0.1", settings.port), accept_simulated=False, seed=seed)
+        windows = OwnWindows("127.0.0.1", settings.port)
         line.start()
+    poll_s = POLL_S if controller.poll_ms is None else controller.poll_ms / 1000
+    plc = SimulatedLine(windows, accept_simulated=False, seed=seed, poll_s=poll_s, timers=controller.timers)
     try:
         truths = Truths(seed + 1)
         with Judge(line, truths.decide):
@@ -200,11 +216,30 @@ def main(argv: Sequence[str] | None = None) -> int:
         default=list(MODES),
         help="Modbus role of the station (default: both)",
     )
+    parser.add_argument(
+        "--poll-ms",
+        type=whole_option,
+        metavar="MS",
+        help="time between two cycles of the PLC (default: as fast as it can)",
+    )
+    parser.add_argument(
+        "--timers",
+        choices=list(TimerKind),
+        type=TimerKind,
+        default=TimerKind.CALL,
+        help="what updates a timer: the call, or each access as on an S7 (default: %(default)s)",
+    )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
         parser.error("--parts must be at least 1")
+    if arguments.poll_ms is not None and not 1 <= arguments.poll_ms <= 100:
+        parser.error("--poll-ms must be 1 to 100")
+    controller = Controller(poll_ms=arguments.poll_ms, timers=arguments.timers)
     try:
-        reports = [run(mode, arguments.parts, arguments.seed, sys.stderr.isatty()) for mode in arguments.mode]
+        reports = [
+            run(mode, arguments.parts, arguments.seed, controller, progress=sys.stderr.isatty())
+            for mode in arguments.mode
+        ]
     except WeldgateError as error:
         print(f"chaos-plc: {error}", file=sys.stderr)
         return 2

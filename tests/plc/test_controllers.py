@@ -28,6 +28,8 @@ from station.plc.map.registers import (
 )
 from tests.plc.test_block import Plc, window
 
+LOOPS = ((0, 15), (0, 20), (1, 40))
+"""Bounds of loops: constants, and more than one turn, as one compiler leaves out a loop of one."""
 AT = {name: register.address - STATUS_START for name, register in BY_NAME.items()}
 READY = window(STATUS=int(Status.READY), VERDICT=0, ACK_TRIGGER_ID=0)
 WIPED = window(STATUS=int(Status.ONLINE | Status.READY), VERDICT=0)
@@ -288,6 +290,7 @@ def test_the_statements_use_only_what_all_controllers_do_alike() -> None:
         assert re.search(rf"{timer}\(IN := [^;]*\);\n\w+ := {timer}\.Q;", text), (
             f"{timer}: right after its call"
         )
+    assert not set(re.findall(r"FOR i := (.+?) DO", text)) - {f"{low} TO {high}" for low, high in LOOPS}
     assert text.count("Holds := ") == len(POINTS) + 1
 
 

@@ -1,5 +1,7 @@
 """The block's inputs, outputs, records and refusals as a page for integrators."""
 
+from collections.abc import Sequence
+
 from station.plc.block.advice import ADVICE
 from station.plc.block.data_types import ARRAYS, RECORDS, Array
 from station.plc.block.definition import NAME, REFUSALS, VARIABLES, Role
@@ -22,8 +24,8 @@ def block_page() -> str:
         [(str(code), name, ADVICE[code]) for code, name in enumerate(REFUSALS) if code],
     )
     for record, fields in RECORDS.items():
-        rows = [(each.name, _type(each.type), each.meaning) for each in fields]
-        text += f"\n## {record}\n\n" + _table(("field", "type", "meaning"), rows)
+        listed = [(each.name, _type(each.type), each.meaning) for each in fields]
+        text += f"\n## {record}\n\n" + _table(("field", "type", "meaning"), listed)
     return text
 
 
@@ -32,6 +34,6 @@ def _type(name: str) -> str:
     return name if array is None else f"{name} ({array})"
 
 
-def _table(head: tuple[str, ...], body: list[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], body: Sequence[tuple[str, ...]]) -> str:
     lines = [head, tuple("---" for _ in head), *body]
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)

@@ -2,7 +2,8 @@
 
 It uses only what IEC 61131-3 and SCL have in common, so that the dialects differ in their declarations alone,
 and only what all controllers do alike: Q of a timer is read once, right after its call (an S7-1200 or S7-1500
-updates a timer at each access), edges are made without vendor blocks, no comparison is negated.
+updates a timer at each access), edges are made without vendor blocks, no comparison is negated, a FOR has
+constant bounds (one compiler leaves out a loop that would run once).
 """
 
 from station.plc.block.data_types import ARRAYS, COPIED, RESULT_FIELDS, Field, plain_type
@@ -244,10 +245,13 @@ IF (Exponent > {EXPONENT - FAR}) AND (Exponent < {EXPONENT + FAR}) THEN
     IF Bits >= {1 << 31} THEN
         {place} := 0.0 - {place};
     END_IF;
-    FOR i := Exponent TO {EXPONENT - 1} DO
-        {place} := {place} * 0.5;
-    END_FOR;
-    FOR i := {EXPONENT + 1} TO Exponent DO
-        {place} := {place} * 2.0;
+    FOR i := 1 TO {FAR} DO
+        IF Exponent < {EXPONENT} THEN
+            {place} := {place} * 0.5;
+            Exponent := Exponent + 1;
+        ELSIF Exponent > {EXPONENT} THEN
+            {place} := {place} * 2.0;
+            Exponent := Exponent - 1;
+        END_IF;
     END_FOR;
 END_IF;"""

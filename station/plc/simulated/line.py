@@ -7,8 +7,6 @@ import asyncio
 import random
 import time
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
-from enum import StrEnum
 from typing import TypeVar
 
 from station.errors import LineError
@@ -32,8 +30,9 @@ from station.plc.map.registers import (
     pack,
     unpack_window,
 )
+from station.plc.simulated.answer import Answer as Answer
+from station.plc.simulated.answer import Fault as Fault
 from station.plc.simulated.windows import RemoteWindows, Windows
-from station.plc.wire.modbus import ModbusClient
 
 Outcome = TypeVar("Outcome")
 
@@ -45,39 +44,6 @@ UNSEEN = "the block saw no edge of Start"
 """What a part is refused by that was never begun."""
 SILENCE_S = (0.05, 0.8)
 """Shortest and longest time for which a faulty PLC does nothing."""
-
-
-class Fault(StrEnum):
-    """A fault that can be injected on the PLC's side."""
-
-    EARLY_DROP = "early trigger drop"
-    STUCK_ACK = "stuck ack"
-    ID_REUSE = "id reuse"
-    WORD_ORDER = "wrong word order"
-    TORN_READS = "torn reads"
-    SILENCE = "silence"
-    STORM = "reconnect storm"
-    NO_REST = "start without rest"
-    START_AGAIN = "start again while busy"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
-    """The PLC's decision on one part."""
-
-    accepted: bool
-    """True if the part passes: all points of the acceptance rule held in one read."""
-    verdict: VerdictCode
-    refused_by: str | None
-    """First point of the rule that did not hold; None: all held."""
-    trigger_to_valid_ms: float | None
-    """Time from trigger to result; None if no result came in time."""
-    inspection_id: int
-    reason: int
-    handshake_complete: bool
-    """True if the trigger was acknowledged, the result read and acknowledged, and RESULT_VALID fell."""
-    flags: Flags
-    trigger_id: int
 
 
 class SimulatedLine:
@@ -119,7 +85,7 @@ class SimulatedLine:
         timers: TimerKind = TimerKind.CALL,
     ) -> "SimulatedLine":
         """Return a line whose PLC is the client of the station at an address."""
-        windows = RemoteWindows(lambda: ModbusClient(host, port))
+        windows = RemoteWindows.at(host, port)
         return SimulatedLine(windows, accept_simulated, seed=seed, poll_s=poll_s, timers=timers)
 
     async def connect(self, timeout_s: float = 30.0) -> None:
@@ -180,7 +146,7 @@ class SimulatedLine:
         if not self._crc_known and await self.wait_ready(window_s):
             plc.Crc, self._crc_known = number(self.status(), "CONFIG_CRC"), True
         self._faults = faults
-        plc.Start, quiet = True, Fault.SILENCE not in faults
+        plc.Start, quiet, loud = True, Fault.SILENCE not in faults, Fault.BURST in faults
         seen: dict[str, Value] | None = None
         triggered_s: float | None = None
         valid_s: float | None = None
@@ -197,6 +163,9 @@ class SimulatedLine:
                 valid_s, seen = time.monotonic(), self.status()
                 if Fault.STORM in faults:
                     await self._storm()
+            if loud and plc.State == silent_in:
+                loud = False
+                await self._burst()
             if not quiet and plc.State == silent_in:
                 quiet = True
                 await asyncio.sleep(self._rng.uniform(*SILENCE_S))
@@ -246,6 +215,12 @@ class SimulatedLine:
     async def _storm(self) -> None:
         try:
             await self._windows.storm()
+        except LineError:
+            self._connected = False
+
+    async def _burst(self) -> None:
+        try:
+            await self._windows.burst()
         except LineError:
             self._connected = False
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from station.errors import LineError
 from station.plc.simulated.line import Answer, Fault, SimulatedLine
 from station.plc.simulated.windows import OwnWindows, RemoteWindows, Windows
-from station.plc.wire.modbus import ModbusClient
 
 FAULT_FRACTION = 0.1
 """Fraction of the parts for which a requested fault is injected."""
@@ -37,7 +36,7 @@ async def run_line(run: LineRun) -> int:
         raise LineError("--parts must be at least 1 and --pace at least 0")
     windows: Windows = OwnWindows(run.host, run.port)
     if run.mode == "server":
-        windows = RemoteWindows(lambda: ModbusClient(run.host, run.port))
+        windows = RemoteWindows.at(run.host, run.port)
     line = SimulatedLine(windows, run.accept_simulated, seed=run.seed)
     rng, passed = random.Random(run.seed), 0
     await line.connect(timeout_s=5)

@@ -1,13 +1,18 @@
 """Access of the simulated PLC to the two windows: in the station over the network, or in its own memory."""
 
+import asyncio
+import struct
 from collections.abc import Callable
 from typing import Protocol
 
+from station.errors import LineError
 from station.plc.map.registers import STATUS_START, STATUS_WORDS
 from station.plc.wire.modbus import ModbusClient, ModbusServer
 
 STORM = 12
 """Number of connections that are opened and closed in a storm."""
+BURST, BURST_S, ANSWER_BYTES = 60, 20.0, 11
+"""Number of requests in a burst, time for their answers, and length of each answer."""
 
 
 class Windows(Protocol):
@@ -25,6 +30,9 @@ class Windows(Protocol):
     async def storm(self) -> None:
         """Connect and disconnect many times. Raises LineError."""
 
+    async def burst(self) -> None:
+        """Send many requests at once, as a client without turns does. Raises LineError."""
+
     async def close(self) -> None:
         """Close the connection or stop the server."""
 
@@ -32,8 +40,14 @@ class Windows(Protocol):
 class RemoteWindows:
     """Windows in the memory of the station, which is the server."""
 
-    def __init__(self, make: Callable[[], ModbusClient]) -> None:
-        self._make, self._client = make, make()
+    def __init__(self, make: Callable[[], ModbusClient], address: tuple[str, int] | None = None) -> None:
+        """`address`: where bursts are sent to; None: nowhere."""
+        self._make, self._client, self._address = make, make(), address
+
+    @staticmethod
+    def at(host: str, port: int) -> "RemoteWindows":
+        """Return the windows of the station at an address, over plain TCP."""
+        return RemoteWindows(lambda: ModbusClient(host, port), (host, port))
 
     async def connect(self) -> None:
         """Connect. Raises LineError."""
@@ -56,6 +70,26 @@ class RemoteWindows:
         self._client.close()
         self._client = self._make()
         await self._client.connect()
+
+    async def burst(self) -> None:
+        """Read one register in each of many requests, sent at once. Raises LineError if one has no answer."""
+        if self._address is None:
+            return
+        asked = b"".join(struct.pack(">HHHBBHH", i, 0, 6, 1, 3, STATUS_START + i, 1) for i in range(BURST))
+        try:
+            async with asyncio.timeout(BURST_S):
+                reader, writer = await asyncio.open_connection(*self._address)
+                try:
+                    writer.write(asked)
+                    answers = await reader.readexactly(BURST * ANSWER_BYTES)
+                finally:
+                    writer.close()
+                    await writer.wait_closed()
+        except (OSError, EOFError, TimeoutError) as error:
+            raise LineError(f"a burst of {BURST} requests was not answered: {error}") from None
+        numbers = [int.from_bytes(answers[at : at + 2], "big") for at in range(0, len(answers), ANSWER_BYTES)]
+        if numbers != list(range(BURST)):
+            raise LineError(f"a burst of {BURST} requests was answered out of turn")
 
     async def close(self) -> None:
         """Close the connection."""
@@ -97,6 +131,9 @@ class OwnWindows:
         self._server = self._at(self._server.port)
         await self._server.start()
         await self._server.write(0, contents)
+
+    async def burst(self) -> None:
+        """Do nothing: a PLC that is the server sends no requests."""
 
     async def close(self) -> None:
         """Stop the server."""
