@@ -35,6 +35,7 @@ bench: $(VENV)/.dev ## measure the times of the station, the finder, the PLC lin
 
 chaos-plc: $(VENV)/.demo ## pass 10,000 parts in each PLC mode while both sides misbehave
 	$(BIN)/python -m deploy.chaos.plc
+	$(BIN)/python -m deploy.chaos.plc --parts 1000 --poll-ms 100 --timers access
 
 chaos-covers: $(VENV)/.demo ## cover defects of labelled frames in twelve ways: LOTS="folder ..."
 	$(BIN)/python -m deploy.chaos.covered $(LOTS)

@@ -1,8 +1,10 @@
 """Foreign peers: mbpoll and libmodbus."""
 
+import asyncio
 import re
 import shutil
 import subprocess
+import threading
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,7 @@ from deploy.chaos.judge import Judge, judged
 from station.plc.line import ModbusLine
 from station.plc.map.registers import COMMAND_WORDS, MAP, STATUS_START, STATUS_WORDS, VerdictCode
 from station.plc.port import Result, Trigger
+from station.plc.simulated.windows import RemoteWindows
 
 HERE = Path(__file__).resolve().parent
 
@@ -79,11 +82,65 @@ def test_mbpoll_is_refused_where_only_the_station_writes(line: ModbusLine) -> No
             assert "Illegal data address" in said
 
 
-def test_a_libmodbus_plc_does_the_whole_handshake_a_thousand_times(line: ModbusLine, tmp_path: Path) -> None:
+def peer(folder: Path) -> Path:
+    """The PLC in C, built."""
     sizes = [f"-DSTATUS_START={STATUS_START}", f"-DSTATUS_WORDS={STATUS_WORDS}"]
     build = ["gcc", "-O1", "-Wall", "-Werror", "-I/usr/include/modbus", *sizes, str(HERE / "peer.c")]
-    build += ["-o", str(tmp_path / "peer"), "-lmodbus"]
-    subprocess.run(build, check=True, timeout=600)
+    subprocess.run([*build, "-o", str(folder / "peer"), "-lmodbus"], check=True, timeout=600)
+    return folder / "peer"
+
+
+def test_a_plc_works_beside_readers_that_poll_in_parallel(line: ModbusLine, tmp_path: Path) -> None:
+    """A libmodbus PLC, two mbpolls without an end, and a client that sends 60 requests at once."""
+    program = peer(tmp_path)
+    poll = [
+        "mbpoll",
+        "-1",
+        "-p",
+        str(line.port),
+        "-t",
+        "4:hex",
+        "-r",
+        "101",
+        "-c",
+        str(STATUS_WORDS),
+        "-l",
+        "10",
+    ]
+    readers = [
+        subprocess.Popen([*poll, "127.0.0.1"], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
+        for _ in range(2)
+    ]
+    stop, bursts = threading.Event(), []
+
+    def shout() -> None:
+        while not stop.is_set():
+            asyncio.run(RemoteWindows.at("127.0.0.1", line.port).burst())
+            bursts.append(1)
+            stop.wait(0.02)
+
+    shouting = threading.Thread(target=shout)
+    shouting.start()
+    try:
+        with Judge(line, lambda trigger: judged(trigger, VerdictCode.OK)):
+            done = subprocess.run(
+                [program, str(line.port), "300"], capture_output=True, text=True, timeout=600, check=False
+            )
+    finally:
+        stop.set()
+        shouting.join()
+        for reader in readers:
+            reader.terminate()
+        said = [reader.communicate(timeout=60)[0] for reader in readers]
+    assert done.stdout.split() == ["300", "300", "0", "0"], done.stdout + done.stderr
+    assert len(bursts) > 3
+    for text in said:
+        assert "failed" not in text
+        assert len(values(text)) == STATUS_WORDS
+
+
+def test_a_libmodbus_plc_does_the_whole_handshake_a_thousand_times(line: ModbusLine, tmp_path: Path) -> None:
+    program = peer(tmp_path)
     seen: list[int] = []
 
     def decide(trigger: Trigger) -> Result:
@@ -93,7 +150,7 @@ def test_a_libmodbus_plc_does_the_whole_handshake_a_thousand_times(line: ModbusL
 
     with Judge(line, decide):
         done = subprocess.run(
-            [tmp_path / "peer", str(line.port), "1000"],
+            [program, str(line.port), "1000"],
             capture_output=True,
             text=True,
             timeout=600,

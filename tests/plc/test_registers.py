@@ -129,6 +129,15 @@ def test_the_table_has_a_row_for_each_register() -> None:
     assert len(as_csv().splitlines()) == len(symbols().splitlines()) == len(MAP) + 1
 
 
+def test_tables_have_as_many_cells_in_each_row_and_no_value_of_32_bits_at_an_odd_address() -> None:
+    assert {line.count(";") for line in as_csv().splitlines()} == {6}
+    rows = [line.split(";") for line in symbols().splitlines()[1:]]
+    assert {len(row) for row in rows} == {4}
+    wide = [int(row[1][3:]) for row in rows if row[2] in ("UDINT", "REAL")]
+    assert wide
+    assert not [address for address in wide if address % 2]
+
+
 def test_a_parser_nobody_here_wrote_reads_the_structured_text() -> None:
     parser = Parser(Language(tree_sitter_iec61131_3_st.language()))
     assert not parser.parse(structured_text().encode()).root_node.has_error

@@ -61,6 +61,9 @@ def symbols() -> str:
 
 
 def _symbol_type(register: Register) -> str:
+    """Return the type of a symbol; on an M340 or M580 a value of 32 bits at an odd address is two words."""
+    if register.kind in ("u32", "f32") and register.address % 2:
+        return "ARRAY[0..1] OF INT"
     plain = {"u16": "INT", "u32": "UDINT", "f32": "REAL", "ascii": "INT"}[register.kind]
     count = register.words if register.kind == "ascii" else register.count
     return plain if count == 1 else f"ARRAY[0..{count - 1}] OF {plain}"

@@ -39,7 +39,7 @@ def rows() -> list[tuple[str, ...]]:
 
 def as_csv() -> str:
     """Return the map as semicolon-separated text, one line per register."""
-    return "".join(";".join(row) + "\n" for row in (COLUMNS, *rows()))
+    return "".join(";".join(cell.replace(";", ",") for cell in row) + "\n" for row in (COLUMNS, *rows()))
 
 
 def as_markdown() -> str:
