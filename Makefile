@@ -29,6 +29,7 @@ bench: $(VENV)/.dev ## measure the times of the station, the finder, the PLC lin
 	$(BIN)/python -m deploy.bench.station
 	$(BIN)/python -m deploy.bench.finder
 	$(BIN)/python -m deploy.bench.plc
+	$(BIN)/python -m deploy.bench.plc_part
 	$(BIN)/python -m deploy.bench.records
 	$(BIN)/python -m deploy.bench.render
 	$(BIN)/python -m deploy.bench.classifier

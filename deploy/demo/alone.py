@@ -16,18 +16,21 @@ from deploy.demo.station import shipped_parts
 from deploy.demo.summary import DemoPart
 from station.errors import LineError, WeldgateError
 from station.plc.map.registers import (
+    BY_NAME,
     STATUS_START,
     STATUS_WORDS,
     Status,
-    Value,
-    VerdictCode,
     named_bits,
     number,
+    unpack,
     unpack_window,
 )
 from station.plc.wire.modbus import ModbusClient
 
 POLL_S = 0.01
+COUNTERS = {"COUNT_OK": "OK", "COUNT_NOK": "NOK", "COUNT_ERROR": "ERROR"}
+"""Registers that count verdicts, and the verdicts."""
+SERIAL = BY_NAME["PART_SERIAL"]
 START_S = 45.0
 """Time within which the station must be up."""
 
@@ -73,30 +76,31 @@ async def _connect(client: ModbusClient, stage: Stage) -> None:
 async def _watch(
     client: ModbusClient, stage: Stage, part: DemoPart, *, parts: Iterator[DemoPart], console: Console
 ) -> None:
-    """Show the next part as soon as a trigger's picture is taken, and print each result."""
-    taken, printed, in_work = -1, 0, part
+    """Show the next part as soon as a trigger's picture is taken, and print each result.
+
+    The counters tell a verdict even if the PLC has acknowledged it between two reads.
+    """
+    taken, in_work = -1, part
+    counted: tuple[int, ...] = ()
     while True:
         stage.check()
         try:
             values = unpack_window(STATUS_START, await client.read(STATUS_START, STATUS_WORDS))
+            serial = unpack(SERIAL, await client.read(SERIAL.address, SERIAL.words))
         except LineError:
             await _connect(client, stage)
             continue
         status, trigger = named_bits(Status, number(values, "STATUS")), number(values, "ACK_TRIGGER_ID")
+        counts = tuple(number(values, name) for name in COUNTERS)
         if taken < 0:
-            taken = printed = trigger
+            taken, counted = trigger, counts
         over = status & (Status.EXPOSURE_DONE | Status.RESULT_VALID) or not status & Status.BUSY
         if trigger != taken and over:
             taken, in_work, part = trigger, part, next(parts)
             stage.show(part)
-        shown = Status.RESULT_VALID in status and number(values, "RESULT_TRIGGER_ID") == taken
-        if shown and printed != taken:
-            printed = taken
-            console.print(_row(values, in_work), highlight=False)
+        for verdict, before, now in zip(COUNTERS.values(), counted, counts, strict=True):
+            if now > before:
+                row = f"trigger {taken:5d}  {verdict:5}  truth {in_work.truth:12}  serial {serial}"
+                console.print(row.rstrip(), highlight=False)
+        counted = counts
         await asyncio.sleep(POLL_S)
-
-
-def _row(values: dict[str, Value], part: DemoPart) -> str:
-    verdict = VerdictCode(number(values, "VERDICT")).name
-    trigger, serial = number(values, "RESULT_TRIGGER_ID"), values["SERIAL_ECHO"]
-    return f"trigger {trigger:5d}  {verdict:5}  truth {part.truth:12}  serial {serial}".rstrip()

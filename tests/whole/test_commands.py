@@ -255,4 +255,4 @@ def test_the_station_of_the_demo_stays_up_for_a_plc(
     assert accepted == [truth == "OK" for truth in truths]
     assert station.returncode == 0, out
     assert "AcceptSimulated := TRUE" in out
-    assert [row for row in out.splitlines() if "serial TRY-" in row][-1].split()[1] == "4"
+    assert out.count("serial TRY-") == len(truths)
