@@ -32,20 +32,26 @@ def test_only_listed_peers_may_connect(address: str, welcome: bool) -> None:
     assert admitted(address, ())
 
 
-@given(st.lists(st.tuples(st.integers(1, 3), st.floats(0, 2), st.booleans()), max_size=40))
-def test_nobody_writes_beside_the_holder(events: list[tuple[int, float, bool]]) -> None:
-    right, now, holder, wrote = WriteRight(1.0), 0.0, None, -10.0
+@given(st.lists(st.tuples(st.integers(1, 4), st.floats(0, 2), st.booleans()), max_size=40))
+def test_nobody_writes_beside_the_holder_nor_takes_its_place_while_it_connects_again(
+    events: list[tuple[int, float, bool]],
+) -> None:
+    """Connections 1 and 2 come from one address, 3 and 4 from another."""
+    right, now, holder, last, wrote = WriteRight(1.0), 0.0, None, None, -10.0
     for connection, wait_s, leaves in events:
         now += wait_s
+        address = "plc" if connection <= 2 else "other"
+        idle = now - wrote > 1.0
         if leaves:
             right.drop(connection)
             holder = None if holder == connection else holder
-        elif right.take(connection, now):
-            assert holder in (None, connection) or now - wrote > 1.0
-            holder, wrote = connection, now
+        elif right.take(connection, address, now):
+            assert holder == connection or idle or (holder is None and last in (None, address))
+            holder, last, wrote = connection, address, now
         else:
-            assert holder not in (None, connection)
-            assert now - wrote <= 1.0
+            assert not idle
+            assert holder != connection
+            assert holder is not None or last != address
 
 
 def serve(conversation: Callable[[ModbusServer], Coroutine[Any, Any, None]], **options: Any) -> None:

@@ -1,7 +1,7 @@
 """Access to the Modbus server: which addresses may connect, who may write, and the log about peers.
 
-One peer writes, the others read: the first connection that writes has the right to write until it closes or
-has not written for a while.
+One peer writes, the others read: the first connection that writes has the right to write until it has not
+written for a while; one that closes can be followed at once from the same address alone.
 """
 
 import asyncio
@@ -48,23 +48,30 @@ def admitted(address: str, networks: Sequence[Network]) -> bool:
 
 
 class WriteRight:
-    """The right to write, held by one connection at a time."""
+    """The right to write, held by one connection at a time.
+
+    A connection that closes leaves the right to its address for the idle time: a PLC that connects again gets
+    it back, and another peer does not slip in between.
+    """
 
     def __init__(self, idle_s: float) -> None:
         """`idle_s`: time without a write after which another connection may take the right."""
         self._idle_s = idle_s
         self.holder: int | None = None
+        self.address: str | None = None
+        """Address of the last holder."""
         self._wrote_s = 0.0
 
-    def take(self, connection: int, now_s: float) -> bool:
+    def take(self, connection: int, address: str, now_s: float) -> bool:
         """Return whether `connection` may write now; each write of the holder renews its right."""
-        if self.holder not in (None, connection) and now_s - self._wrote_s <= self._idle_s:
+        own = self.holder == connection or (self.holder is None and self.address in (None, address))
+        if not own and now_s - self._wrote_s <= self._idle_s:
             return False
-        self.holder, self._wrote_s = connection, now_s
+        self.holder, self.address, self._wrote_s = connection, address, now_s
         return True
 
     def drop(self, connection: int) -> None:
-        """Release the right of a connection that is closed."""
+        """Take the right from a connection that is closed; its address keeps it for the idle time."""
         if self.holder == connection:
             self.holder = None
 

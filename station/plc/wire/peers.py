@@ -91,10 +91,9 @@ class Peers:
             role = "no role" if peer.role is None else f"the role {peer.role}"
             self.complain(peer.name, f"may not write: its certificate has {role}, not {wanted}")
             return ILLEGAL_FUNCTION
-        if self._right.take(number, time.monotonic()):
+        if self._right.take(number, peer.name, time.monotonic()):
             return None
-        holder = self._open.get(self._right.holder or 0)
-        whose = "another peer" if holder is None else holder.name
+        whose = self._right.address or "another peer"
         advice = "name the PLC under plc.writers"
         self.complain(peer.name, f"may not write: {whose} has the right to write; {advice}")
         return BUSY
