@@ -14,6 +14,7 @@ from station.classify.onnx import RingNetwork
 from station.domain import Image
 from station.files.image import read_image
 from station.files.installation import SHIPPED_NETWORKS
+from station.numbers import whole_option
 from station.vision.locate import Expected, locate
 from station.vision.reduced import reduce_to_finder
 
@@ -52,7 +53,7 @@ def main() -> None:
     """Measure in turns and print medians and ratios."""
     parser = argparse.ArgumentParser(prog="python -m deploy.bench.finder", description=__doc__)
     parser.add_argument(
-        "--rounds", type=int, default=50, metavar="N", help="number of turns (default: %(default)s)"
+        "--rounds", type=whole_option, default=50, metavar="N", help="number of turns (default: %(default)s)"
     )
     rounds = parser.parse_args().rounds
     if rounds < 1:

@@ -19,6 +19,7 @@ from deploy.bench.signals import LANES, drawn
 from deploy.chaos.judge import Judge, judged
 from deploy.demo.ports import free_ports
 from station.errors import WeldgateError
+from station.numbers import whole_option
 from station.plc.bus_log import Edge, edges
 from station.plc.line import make_line
 from station.plc.map.registers import Value, VerdictCode
@@ -91,7 +92,9 @@ async def _drive(plc: SimulatedLine, parts: int, bus: Bus) -> list[float]:
 def main(argv: Sequence[str] | None = None) -> int:
     """Measure, print the table, and draw the last part at 20 ms if asked."""
     parser = argparse.ArgumentParser(prog="bench-plc-part", description="Measure what a part costs the PLC.")
-    parser.add_argument("--parts", type=int, default=20, metavar="N", help="parts each (default: 20)")
+    parser.add_argument(
+        "--parts", type=whole_option, default=20, metavar="N", help="parts each (default: 20)"
+    )
     parser.add_argument("--draw", type=Path, metavar="FILE", help="draw the signals of one part as SVG")
     arguments = parser.parse_args(argv)
     table = Table("station as", "poll ms", "Start to PartDone ms", "slowest ms", "less inspection ms")

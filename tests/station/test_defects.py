@@ -215,10 +215,10 @@ def test_a_damaged_record_of_any_version_is_refused() -> None:
         {"provenance": {}},
         {"format": 3},
     ):
-        with pytest.raises(ValidationError):
+        with pytest.raises(ValueError, match=r"not a record|validation error|Expecting"):
             from_json(json.dumps({**raw, **change}).encode())
     for text in (b"", b"[]", b"null", b"{"):
-        with pytest.raises(ValidationError):
+        with pytest.raises(ValueError, match=r"not a record|validation error|Expecting"):
             from_json(text)
 
 

@@ -42,8 +42,8 @@ MAYBE = st.none() | NUMBER
 FINDING = st.builds(
     Finding,
     kind=st.sampled_from(Reason),
-    start_deg=NUMBER,
-    end_deg=NUMBER,
+    start_deg=st.floats(-360, 360),
+    end_deg=st.floats(360, 1080),
     length_mm=NUMBER,
     score=NUMBER,
     width_mm=MAYBE,
