@@ -103,6 +103,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.error(f"--json {arguments.json}: cannot be written ({error.strerror})")
     try:
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+        # a shell that starts it in the background has it ignore Ctrl-C, and nothing else ends it
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         with standard_output_free([arguments.json]):
             console = Console()
             return _run_alone(arguments, console) if arguments.station else _run(arguments, console)

@@ -251,7 +251,7 @@ def test_the_station_of_the_demo_stays_up_for_a_plc(
         out, _ = station.communicate(timeout=120)
     finally:
         station.kill()
-        station.wait()
+        station.communicate()
     assert accepted == [truth == "OK" for truth in truths]
     assert station.returncode == 0, out
     assert "AcceptSimulated := TRUE" in out
