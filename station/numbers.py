@@ -13,6 +13,9 @@ from pydantic import Field
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 """A finite number in a file or message; neither a text nor true or false."""
 
+LAST_PORT = 65535
+"""Highest TCP port."""
+
 _DECIMAL = r"\d+(?:[.,]\d+)?"
 _NUMBER = re.compile(rf"[+-]?{_DECIMAL}(?:[eE][+-]?\d{{1,3}})?", re.ASCII)
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
@@ -70,6 +73,14 @@ def whole_option(text: str) -> int:
         return whole(text)
     except ValueError as error:
         raise ArgumentTypeError(str(error)) from None
+
+
+def port_option(text: str) -> int:
+    """Return the TCP port of an option of a command. Raises argparse.ArgumentTypeError."""
+    port = whole_option(text)
+    if not 1 <= port <= LAST_PORT:
+        raise ArgumentTypeError(f"{port} is not a TCP port; 1 to {LAST_PORT} is allowed")
+    return port
 
 
 def not_bool(value: object) -> object:

@@ -26,7 +26,7 @@ from deploy.demo.summary import DemoPart, Judged, count, print_part, summarise, 
 from station.errors import LineError, WeldgateError
 from station.files.destination import find_destination, output_path, standard_output_free
 from station.files.installation import room_command
-from station.numbers import number_option, whole_option
+from station.numbers import number_option, port_option, whole_option
 from station.plc.simulated.line import SimulatedLine
 from synth.errors import SynthError
 
@@ -85,8 +85,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--port",
-        type=whole_option,
-        choices=range(1, 65536),
+        type=port_option,
         default=1502,
         metavar="PORT",
         help="with --station: TCP port for the PLC (default: %(default)s)",

@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Sequence
 from typing import Any
 
-from station.numbers import number_option, whole_option
+from station.numbers import number_option, port_option, whole_option
 
 
 def add_line_options(line: argparse.ArgumentParser) -> None:
@@ -25,8 +25,7 @@ def add_line_options(line: argparse.ArgumentParser) -> None:
     )
     line.add_argument(
         "--port",
-        type=whole_option,
-        choices=range(1, 65536),
+        type=port_option,
         default=1502,
         metavar="PORT",
         help="TCP port (default: %(default)s)",

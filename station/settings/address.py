@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from station.numbers import LAST_PORT
 from station.settings.section import FROM_TEXT, TEXT_ONLY
 
 
@@ -14,7 +15,7 @@ def _loopback(address: IPv4Address | IPv6Address) -> IPv4Address | IPv6Address:
     return address
 
 
-Port = Annotated[int, Field(ge=1, le=65535)]
+Port = Annotated[int, Field(ge=1, le=LAST_PORT)]
 """TCP port."""
 Loopback = Annotated[
     Annotated[IPv4Address, FROM_TEXT] | Annotated[IPv6Address, FROM_TEXT],

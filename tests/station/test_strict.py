@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from deploy.demo.run import main as demo
 from station.__main__ import main
 from station.analysis.truth import read_truth
 from station.channel.zeromq import _MESSAGE
@@ -228,6 +229,20 @@ def test_an_option_with_a_decimal_comma_is_read(capsys: pytest.CaptureFixture[st
         with suppress(SystemExit):  # argparse ends the command itself
             assert main(["records", "list", str(tmp_path), *option]) == 2
         assert "no records found" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("port", ["0", "65536", "-1", "1502.0", "all"])
+@pytest.mark.parametrize("command", [["line"], ["demo", "--station"]])
+def test_a_wrong_port_is_refused_in_a_short_line(
+    command: list[str], port: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run, options = (main, command) if command[0] == "line" else (demo, command[1:])
+    with pytest.raises(SystemExit) as ended:
+        run([*options, "--port", port])
+    assert ended.value.code == 2
+    line = capsys.readouterr().err.splitlines()[-1]
+    assert "--port" in line
+    assert len(line) < 120
 
 
 def test_the_example_is_strict() -> None:
