@@ -78,7 +78,8 @@ def prune(
             work.remove_leftovers()
             found = jumps(index, clock)
             right = trusted(found, clock)
-            last, doubt = newest(index, right), _doubt(index, found, clock, now=now)
+            last = newest(index, right)
+            doubt = _doubt(index, undecided(found, clock), right, now=now)
             by_age = not doubt and last is not None and now - last <= STRANGE
             done = Pruned(doubt=doubt)
             for condition, days, rule in _old_frames(keep) if by_age else ():
@@ -111,7 +112,8 @@ def clock_doubt(folder: Path, now: datetime, clock: Clock) -> str:
     """Return why the clock is in doubt, or an empty text. Raises RecordError."""
     try:
         with closing(read_index(folder)) as index:
-            return _doubt(index, jumps(index, clock), clock, now=now)
+            found = jumps(index, clock)
+            return _doubt(index, undecided(found, clock), trusted(found, clock), now=now)
     except (sqlite3.Error, ValueError) as error:
         raise RecordError(f"{folder}: the index cannot be read ({error})") from None
 
@@ -121,15 +123,15 @@ def sampled(inspection_id: int, fraction: float) -> bool:
     return int.from_bytes(hashlib.sha256(str(inspection_id).encode()).digest()[:4], "big") < fraction * 2**32
 
 
-def _doubt(index: sqlite3.Connection, found: list[Jump], clock: Clock, *, now: datetime) -> str:
-    open_ones = undecided(found, clock)
+def _doubt(index: sqlite3.Connection, open_ones: list[Jump], right: str, *, now: datetime) -> str:
+    """Return why the clock is in doubt, or ""; `right`: as from `trusted`."""
     if open_ones:
         more = f" and {len(open_ones) - 1} more" if len(open_ones) > 1 else ""
         return f"the dates jump at {open_ones[0]}{more}"
-    last = newest(index, trusted(found, clock))
+    last = newest(index, right)
     if last is not None and now < last - BACK:
         return f"the clock says {now:%Y-%m-%d %H:%M}, but the newest record is of {last:%Y-%m-%d %H:%M}"
-    wrong = newest(index, f"NOT ({trusted(found, clock)})")
+    wrong = newest(index, f"NOT ({right})")
     if last is not None and wrong is not None and now - last > STRANGE and abs(now - wrong) < STRANGE:
         return f"the clock still says {now:%Y-%m-%d %H:%M}, like the records whose date is wrong"
     return ""
