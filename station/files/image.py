@@ -41,15 +41,15 @@ def read_marked(path: Path) -> tuple[Image, tuple[str, ...]]:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise ImageError(f"{path}: larger than 512 MiB, so it is not a frame")
-        raw = np.frombuffer(read_regular(path, MAX_BYTES), np.uint8)
+        content = read_regular(path, MAX_BYTES)
     except (OSError, ValueError) as error:
         raise ImageError(f"{path}: cannot be read ({getattr(error, 'strerror', error)})") from None
-    image, header = None, read_header(raw.tobytes())
+    image, header = None, read_header(content)
     if header is not None and (problem := header.problem()) is not None:
         raise ImageError(f"{path}: {problem}")
-    if raw.size and header is not None:
+    if header is not None:
         try:
-            image = cv2.imdecode(raw, cv2.IMREAD_UNCHANGED)
+            image = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED)
         except cv2.error:
             image = None
     if image is None:

@@ -34,8 +34,8 @@ def fit_circle(circle: Circle, sectors: Sectors, prior: Prior) -> tuple[Circle, 
 
     The bead has one width all around, so that a border counts even where the other one is lost in what lies
     beside the bead. Least squares with Cauchy weights, times presence; where the borders are uncertain, the
-    radius leans on what is known of it. The distances (84,) of the weld's
-    centre line from the circle are in px of the reduced picture.
+    radius leans on what is known of it. The distances (84,) of the weld's centre line from the circle are in
+    px of the reduced picture.
     """
     width = sectors.is_bead.astype(np.float64)
     basis = np.concatenate([np.column_stack([_AROUND, -width]), np.column_stack([_AROUND, width])])
