@@ -3,7 +3,6 @@
 import argparse
 import gc
 import io
-import logging
 import os
 import signal
 import subprocess
@@ -18,6 +17,7 @@ from station.cli.records import add_commands
 from station.errors import WeldgateError
 from station.files.destination import output_path, standard_output_free
 from station.files.installation import SHIPPED_NETWORKS, room_command
+from station.log import start_log
 from station.numbers import number_option, whole_option
 
 SETTINGS = Path("station.toml")
@@ -29,7 +29,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(argv)
     if isinstance(sys.stdout, io.TextIOWrapper):  # names of files and serials may hold anything
         sys.stdout.reconfigure(errors="backslashreplace")
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", stream=sys.stderr)
+    start_log()
     try:
         with standard_output_free(vars(arguments).values()):
             return int(arguments.command(arguments))

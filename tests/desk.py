@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from station.camera.reconnecting import ReconnectingCamera
+from station.channel.request_socket import RequestClient, RequestServer
 from station.channel.requests import Answer, EndService, Message, Request
-from station.channel.zeromq import RequestClient, RequestServer
 from station.domain import Frame
 from station.engine.active_settings import ActiveSettings
 from station.engine.operator_requests import OperatorRequests

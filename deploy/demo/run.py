@@ -117,9 +117,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(arguments: argparse.Namespace, console: Console) -> int:
     window = not arguments.headless and has_display()
     pace_s = arguments.pace or (2.0 if window else 0.0)
-    records, ports = arguments.records.resolve(), free_ports(4)
+    records, port = arguments.records.resolve(), free_ports(1)[0]
     with ExitStack() as stack:
-        settings = station_toml(records, *ports, deadline_ms=DEADLINE_MS)
+        settings = station_toml(records, port, deadline_ms=DEADLINE_MS)
         stage = stack.enter_context(staged(settings, window, console))
         folder = stage.folder
         fresh = max(0, arguments.parts - len(shipped_parts()))
@@ -130,7 +130,7 @@ def _run(arguments: argparse.Namespace, console: Console) -> int:
         )
         judged = asyncio.run(
             _drive(
-                ports[0],
+                port,
                 stage,
                 parts,
                 stopping=stopping,
@@ -149,7 +149,6 @@ def _run_alone(arguments: argparse.Namespace, console: Console) -> int:
     settings = station_toml(
         arguments.records.resolve(),
         arguments.port,
-        *free_ports(3),
         host=arguments.host,
         deadline_ms=ALONE_DEADLINE_MS,
     )

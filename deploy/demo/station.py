@@ -24,13 +24,11 @@ def shipped_parts() -> list[DemoPart]:
     ]
 
 
-def station_toml(records: Path, *ports: int, host: str = "127.0.0.1", deadline_ms: int = 2000) -> str:
+def station_toml(records: Path, port: int, *, host: str = "127.0.0.1", deadline_ms: int = 2000) -> str:
     """Return the settings of a station with the emulated camera and the shipped networks.
 
-    `ports` are those of PLC, events, preview and requests; `host` is the address for the PLC. A busy machine
-    needs a longer deadline.
+    `host` and `port` are the address for the PLC. A busy machine needs a longer deadline.
     """
-    plc_port, events_port, preview_port, requests_port = ports
     good = next(part.path for part in shipped_parts() if part.truth == "OK")
     return f"""
 [camera]
@@ -46,14 +44,10 @@ self_test_path = {json.dumps(str(good))}
 self_test_verdict = "OK"
 [plc]
 host = {json.dumps(host)}
-port = {plc_port}
+port = {port}
 deadline_ms = {deadline_ms}
 [archive]
 folder = {json.dumps(str(records))}
-[channel]
-events_port = {events_port}
-preview_port = {preview_port}
-requests_port = {requests_port}
 """
 
 

@@ -139,14 +139,14 @@ def _order() -> list[tuple[str, DemoPart, bool]]:
 @contextmanager
 def _station(folder: Path) -> Iterator[tuple[Path, _Line]]:
     """Run an engine in its own process; yield its settings file and its line, not yet started."""
-    feed, ports = Feed(folder / "feed"), free_ports(4)
+    feed, port = Feed(folder / "feed"), free_ports(1)[0]
     settings = folder / "station.toml"
     settings.write_text(
-        station_toml(folder / "records", *ports)
+        station_toml(folder / "records", port)
         + '[golden]\ndue_h = 8\n[golden.masters]\n"MASTER-OK" = "OK"\n"MASTER-NOK" = "NOK"\n'
     )
     command = [sys.executable, "-m", "station", "engine", "-c", str(settings)]
-    line = _Line(feed, ports[0])
+    line = _Line(feed, port)
     with (folder / "engine.log").open("w") as log, running(command, {**os.environ, **feed.environment}, log):
         try:
             yield settings, line

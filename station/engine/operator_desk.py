@@ -8,7 +8,7 @@ import logging
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from station.archive.reader import Query, find
@@ -67,8 +67,9 @@ class _Lease:
 
     token: str
     who: str
-    bit: int
-    until_s: float
+    bit: int = field(kw_only=True)
+    setup_images: bool = field(kw_only=True)
+    until_s: float = field(kw_only=True)
 
 
 class OperatorDesk:
@@ -88,8 +89,11 @@ class OperatorDesk:
         self._clock = clock
         self._lease: _Lease | None = None
 
-    def handle(self, message: Message, reply: Reply, change: Start) -> None:
-        """Answer a request by `reply`; changes of settings are started by `change`, which replies later."""
+    def handle(self, message: Message, reply: Reply, change: Start, *, source: str = "") -> None:
+        """Answer a request by `reply`; changes of settings are started by `change`, which replies later.
+
+        `source`: account and process of this machine that sent it.
+        """
         now_s = self._clock()
         user = self._logins.user(message.token, now_s)
         self._logins.renew(message.token, False, now_s)
@@ -98,7 +102,7 @@ class OperatorDesk:
                 raise WeldgateError(TOO_OLD)
             check(message.request, user)
             if isinstance(message.request, LogIn):
-                reply(self._log_in(message, message.request))
+                reply(self._log_in(message, message.request, source))
             elif user is None:
                 raise LoginError(FAULT)
             elif isinstance(message.request, ChangeSettings | ReloadSettings):
@@ -114,11 +118,11 @@ class OperatorDesk:
             log.exception("request %r failed", message.request)
             reply(Answer(message.request_id, FAULT, logged_in=user is not None))
 
-    def _log_in(self, message: Message, request: LogIn) -> Answer:
+    def _log_in(self, message: Message, request: LogIn, source: str) -> Answer:
         name = request.name.strip()
         if not users(self._folder):
             accounts.save_user(self._folder, name, level=Level.ADMIN, pin=request.pin, by=name)
-        user = accounts.log_in(self._folder, name, request.pin)
+        user = accounts.log_in(self._folder, name, request.pin, source=source)
         self._log_out(message.token, "another user logged in")
         token = self._logins.begin(user, self._clock())
         return Answer(message.request_id, logged_in=True, token=token, name=user.name, level=user.level)
@@ -209,10 +213,14 @@ class OperatorDesk:
             raise LoginError(f"{request.bit} is not a single bit of STATUS")
         if held is None:
             self._note(user, "service mode", after="begins")
-        bit = 0 if held is None else held.bit
+        bit, images = (0, False) if held is None else (held.bit, held.setup_images)
         if request.bit != bit:
             self._note(user, "bit by hand", _bit_name(bit), _bit_name(request.bit))
-        self._lease = _Lease(token, user.name, request.bit, now_s + LEASE_S)
+        if request.look != images:
+            self._note(user, "setup images", after="begins" if request.look else "over")
+        self._lease = _Lease(
+            token, user.name, bit=request.bit, setup_images=request.look, until_s=now_s + LEASE_S
+        )
         order = orders.Service(
             user.name,
             bit=request.bit,

@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 
 from station.channel.events import Event, StatusEvent
+from station.channel.request_socket import RequestServer
 from station.channel.requests import FAULT, Answer, ChangeSettings, Message, ReloadSettings
-from station.channel.zeromq import RequestServer
 from station.engine.active_settings import ActiveSettings
 from station.engine.logins import Logins
 from station.engine.operator_desk import OperatorDesk, Reply
@@ -42,7 +42,7 @@ class OperatorRequests:
             active.settings.archive.folder, logins, hand_over=hand_over, counts=self._counts
         )
         self._change = SettingsChange(path, active, hand_over=hand_over, recipe=self._recipe, stop=self._stop)
-        self._answers: queue.SimpleQueue[tuple[bytes, Answer]] = queue.SimpleQueue()
+        self._answers: queue.SimpleQueue[tuple[int, Answer]] = queue.SimpleQueue()
         self._changes: queue.Queue[Callable[[], None]] = queue.Queue(MAX_CHANGES)
         try:
             self._change.note_unfinished()
@@ -75,13 +75,14 @@ class OperatorRequests:
         self._desk.close()
 
     def _serve_once(self) -> None:
-        for sender, message in self._server.received(POLL_S):
-            self._desk.handle(message, partial(self._reply, sender), self._queue_change)
+        for incoming in self._server.received(POLL_S):
+            reply = partial(self._reply, incoming.sender)
+            self._desk.handle(incoming.message, reply, self._queue_change, source=str(incoming.peer))
         while not self._answers.empty():
             self._server.answer(*self._answers.get())
         self._desk.tick()
 
-    def _reply(self, sender: bytes, answer: Answer) -> None:
+    def _reply(self, sender: int, answer: Answer) -> None:
         """Queue an answer, from either thread; the socket belongs to one of them."""
         self._answers.put((sender, answer))
 

@@ -15,7 +15,8 @@ from station.archive.writer import Archive
 from station.camera.choose import make_camera
 from station.camera.reconnecting import ReconnectingCamera
 from station.channel.events import Event
-from station.channel.zeromq import Publisher, RequestServer
+from station.channel.request_socket import RequestServer
+from station.channel.zeromq import Publisher
 from station.domain import Purpose, Verdict
 from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog

@@ -47,8 +47,11 @@ def remove_user(folder: Path, name: str, *, by: str) -> None:
     append(folder, Kind.USER, by, name, before=_level_of(stored, name))
 
 
-def log_in(folder: Path, name: str, pin: str) -> User:
-    """Check a PIN. Raises LoginError if it is wrong, or the name is locked after wrong PINs; RecordError."""
+def log_in(folder: Path, name: str, pin: str, *, source: str = "") -> User:
+    """Check a PIN. Raises LoginError if it is wrong, or the name is locked after wrong PINs; RecordError.
+
+    `source`: account and process of this machine that asks; it is written to the journal.
+    """
     last = entries(folder, (Kind.LOGIN, Kind.LOGIN_FAILED), name, limit=TRIES)
     tries = [entry for entry in last if _age(entry) < timedelta(seconds=LOCKED_S)]
     if len(tries) == TRIES and all(entry.kind is Kind.LOGIN_FAILED for entry in tries):
@@ -57,9 +60,9 @@ def log_in(folder: Path, name: str, pin: str) -> User:
         raise LoginError(why, locked_s=left_s)
     stored = stored_users(folder).get(name)
     if stored is None or not hmac.compare_digest(_hash(pin, stored.salt), stored.hash):
-        append(folder, Kind.LOGIN_FAILED, name, name)
+        append(folder, Kind.LOGIN_FAILED, name, name, reason=source)
         raise LoginError("unknown name or wrong PIN")
-    append(folder, Kind.LOGIN, name, name)
+    append(folder, Kind.LOGIN, name, name, reason=source)
     return User(name, stored.level)
 
 

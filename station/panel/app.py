@@ -8,7 +8,8 @@ from pathlib import Path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
-from station.channel.zeromq import RequestClient, Subscriber
+from station.channel.request_socket import RequestClient
+from station.channel.zeromq import Subscriber
 from station.errors import WeldgateError
 from station.panel.look import theme, words
 from station.panel.session.bridge import Bridge

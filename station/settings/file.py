@@ -80,6 +80,7 @@ def _anchored(settings: Settings, folder: Path) -> Settings:
             for number, recipe in settings.recipes.items()
         },
         "archive": settings.archive.model_copy(update=_under(folder, dict(settings.archive))),
+        "channel": settings.channel.model_copy(update=_under(folder, dict(settings.channel))),
         "camera": settings.camera.model_copy(update=_under(folder, dict(settings.camera))),
     }
     tls = settings.plc.tls

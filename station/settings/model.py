@@ -1,7 +1,6 @@
 """The sections and values of station.toml, with their defaults and allowed ranges."""
 
 from collections.abc import Mapping
-from ipaddress import IPv4Address
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,7 +10,6 @@ from station.defects import kind_named
 from station.domain import NETWORK_UM_PER_PX, TRAINED_UM_PER_PX
 from station.errors import SettingsError
 from station.numbers import number_key
-from station.settings.address import Loopback, Port
 from station.settings.camera import AnyCamera, ReplaySettings
 from station.settings.plc import PlcSettings as PlcSettings
 from station.settings.plc import TlsSettings as TlsSettings
@@ -19,6 +17,8 @@ from station.settings.quality import Fraction
 from station.settings.quality import QualitySettings as QualitySettings
 from station.settings.section import FilePath, Section
 
+FORMER_CHANNEL = ("host", "events_port", "preview_port", "requests_port")
+"""Keys of [channel] when it was reached over TCP."""
 KindName = Annotated[str, AfterValidator(lambda name: kind_named(name).name)]
 """Name of a known kind of defect."""
 
@@ -147,15 +147,21 @@ class ArchiveSettings(Section):
 
 
 class ChannelSettings(Section):
-    """Local channel between engine and window (ZeroMQ).
+    """Local channel between engine and window (ZeroMQ over Unix sockets)."""
 
-    It has no encryption and carries times of this machine's clock, so only loopback addresses are allowed.
-    """
+    folder: FilePath = Path("channel")
+    """Folder of the sockets. The engine makes it for its own account; a group may be admitted by its mode."""
 
-    host: Loopback = IPv4Address("127.0.0.1")
-    events_port: Port = 15551
-    preview_port: Port = 15552
-    requests_port: Port = 15553
+    @model_validator(mode="before")
+    @classmethod
+    def _has_no_ports(cls, raw: Any) -> Any:
+        ports = [key for key in raw if key in FORMER_CHANNEL] if isinstance(raw, Mapping) else []
+        if ports:
+            raise ValueError(
+                f"{', '.join(ports)}: no longer used, because every account of the machine can reach a port; "
+                "engine and window meet in channel.folder. Delete the line"
+            )
+        return raw
 
 
 class PanelSettings(Section):

@@ -63,10 +63,10 @@ class Line:
 @pytest.fixture
 def station(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[tuple[Path, Line]]:
     """A parameter: more lines of the settings file."""
-    feed, ports = Feed(tmp_path / "feed"), free_ports(4)
+    feed, port = Feed(tmp_path / "feed"), free_ports(1)[0]
     path = tmp_path / "station.toml"
     path.write_text(
-        station_toml(tmp_path / "records", *ports, deadline_ms=20_000) + getattr(request, "param", "")
+        station_toml(tmp_path / "records", port, deadline_ms=20_000) + getattr(request, "param", "")
     )
     with (
         (tmp_path / "engine.log").open("w") as log,
@@ -76,7 +76,7 @@ def station(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[tuple[Pa
             log,
         ),
     ):
-        yield path, Line(feed, ports[0])
+        yield path, Line(feed, port)
 
 
 @pytest.fixture

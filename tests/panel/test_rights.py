@@ -9,8 +9,9 @@ from pytestqt.qtbot import QtBot
 
 from station.archive.writer import Archive
 from station.channel.preview import make_preview
+from station.channel.request_socket import Incoming, RequestServer
 from station.channel.requests import Answer, Changed, HoldService, LogIn, Message
-from station.channel.zeromq import Publisher, RequestServer
+from station.channel.zeromq import Publisher
 from station.domain import Frame, Image, Origin
 from station.engine import orders
 from station.engine.alarm_log import AlarmLog
@@ -126,7 +127,7 @@ def test_a_busy_engine_may_answer_late_and_a_silent_one_is_given_up(
 ) -> None:
     """Under load, a window once gave up an engine whose events it was receiving."""
     monkeypatch.setattr("station.panel.session.pending.SILENCE_S", 0.5)
-    server, answers, asked = RequestServer(settings), list[Answer](), list[tuple[bytes, Message]]()
+    server, answers, asked = RequestServer(settings), list[Answer](), list[Incoming]()
 
     def log_in_is_received() -> bool:
         if answers:  # not connected yet
@@ -144,7 +145,7 @@ def test_a_busy_engine_may_answer_late_and_a_silent_one_is_given_up(
             publisher.send(status())
             qtbot.wait(50)
         assert answers == [], "events come, so the engine is there"
-        sender, message = asked[-1]
+        sender, message = asked[-1].sender, asked[-1].message
         server.answer(sender, Answer(message.request_id, "unknown name or wrong PIN"))
         qtbot.waitUntil(lambda: [a.refusal for a in answers] == ["unknown name or wrong PIN"], timeout=5000)
         window.session.account.log_in("Ada", PIN, answers.append)
@@ -172,9 +173,9 @@ def test_a_request_waits_for_its_connection_while_events_come(
 
     def requests_are_received() -> bool:
         publisher.send(status())
-        for sender, message in server.received(0.0):
-            asked.append(message)
-            server.answer(sender, Answer(message.request_id, "no"))
+        for incoming in server.received(0.0):
+            asked.append(incoming.message)
+            server.answer(incoming.sender, Answer(incoming.message.request_id, "no"))
         return len(answers) == 2
 
     try:

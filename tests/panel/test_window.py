@@ -240,6 +240,6 @@ def test_pages_that_are_built_again_leave_none_behind(window: Window, qtbot: QtB
     assert widgets() <= before, f"after {time.monotonic() - start:.1f} s"
 
 
-def test_a_channel_port_in_use_is_reported(settings: ChannelSettings, publisher: Publisher) -> None:
-    with pytest.raises(LineError, match=r"channel\.events_port"):
+def test_a_channel_in_use_is_reported(settings: ChannelSettings, publisher: Publisher) -> None:
+    with pytest.raises(LineError, match=r"another engine uses .*channel\.folder"):
         Publisher(settings)

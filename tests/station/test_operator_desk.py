@@ -308,7 +308,9 @@ def test_whatever_is_done_by_hand_is_in_the_journal(desk: Desk) -> None:
         ("Sam", "test image", "", ""),
         ("Sam", "test image", "", "MASTER-1"),
         ("Sam", "service mode", "", "begins"),
+        ("Sam", "setup images", "", "begins"),
         ("Sam", "bit by hand", "–", "READY"),
+        ("Sam", "setup images", "", "over"),
         ("Sam", "counters", "OK 3, NOK 1, ERROR 0", "0"),
         ("Sam", "service mode", "begins", "over"),
     ]

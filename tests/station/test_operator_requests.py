@@ -1,15 +1,16 @@
 """Windows and engine over the real channel: every request is answered, even if windows are killed."""
 
+import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import zmq
 
 from deploy.demo.ports import free_ports
 from deploy.demo.station import station_toml
 from station.archive.schema import open_index
+from station.channel.request_socket import MAX_BYTES, REQUESTS
 from station.channel.requests import (
     Acknowledge,
     Changed,
@@ -22,7 +23,7 @@ from station.channel.requests import (
     StayLoggedIn,
     TakeTestImage,
 )
-from station.channel.zeromq import MAX_BYTES
+from station.channel.sockets import socket_path
 from station.engine import active_settings as released
 from station.engine import orders
 from station.engine.orders import UseSettings
@@ -41,7 +42,7 @@ CHANGE = ChangeSettings((Changed(SHARPNESS, 0.02),), "trial of the limit")
 @pytest.fixture
 def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     made = tmp_path / "station.toml"
-    made.write_text(station_toml(tmp_path / "records", *free_ports(4)))
+    made.write_text(station_toml(tmp_path / "records", free_ports(1)[0]))
     (tmp_path / "records").mkdir()
     open_index(tmp_path / "records").close()
     loaded = prepare(load(made), 1)
@@ -104,25 +105,21 @@ def test_a_window_killed_in_any_step_of_a_change_leaves_the_old_settings_or_the_
 def test_a_request_cut_off_on_its_way_changes_nothing_and_ends_nothing(
     desk: Desk, window: PlainWindow
 ) -> None:
-    context = zmq.Context()
-    settings = desk.active.settings.channel
-    socket = context.socket(zmq.DEALER)
-    socket.connect(f"tcp://{settings.host}:{settings.requests_port}")
+    peer = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    peer.connect(str(socket_path(desk.active.settings.channel.folder, REQUESTS)))
     for rubbish in (
-        b"",
         b"{",
         b"[]",
         b'{"request_id": 1}',
         b"\xff" * 1000,
         b'{"request_id": 1, "sent_s": 0, "request": {"type": "log',
     ):
-        socket.send(rubbish)
-        socket.send_multipart([rubbish, rubbish, rubbish])
-    socket.send(b"x" * (MAX_BYTES + 1))
-    time.sleep(0.1)
+        peer.send(rubbish)
+    peer.send(b"x" * (MAX_BYTES + 1))
     assert window.ask(StayLoggedIn(True)).done
-    assert not socket.poll(0), "what is not understood is not answered"
-    context.destroy(linger=0)
+    peer.settimeout(10)
+    assert peer.recv(100) == b"", "what is not understood is not answered, what is too long disconnected"
+    peer.close()
     assert adjustments.read(desk.path) == OLD
 
 

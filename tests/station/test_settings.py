@@ -60,7 +60,6 @@ def test_every_path_counts_from_the_folder_of_the_file(tmp_path: Path) -> None:
             GOOD + "[model.limits.crakc]\nthreshold = 0.5\n",
             "unknown kind of defect 'crakc'; known: hole, ",
         ),
-        (GOOD + '[channel]\nhost = "nowhere"\n', "channel.host"),
         (GOOD + "[weld]\num_per_px = 5\n", "weld.um_per_px: the networks are trained for 9 to 65 µm/px, not"),
         (
             GOOD + "[recipes.2]\nweld = { um_per_px = 66 }\n",
@@ -74,7 +73,7 @@ def test_every_path_counts_from_the_folder_of_the_file(tmp_path: Path) -> None:
             GOOD + "width_px = 1600\nheight_px = 1600\n[recipes.2]\nweld = { radius_mm = 9.5 }\n",
             "recipe 2: images of 1600 x 1600 px are too small for .* which needs 1615 x 1615 px",
         ),
-        (GOOD + '[channel]\nhost = "192.168.1.5"\n', "channel.host: must be a loopback address"),
+        (GOOD + "[channel]\nevents_port = 15551\n", "channel: events_port: no longer used"),
     ],
 )
 def test_mistakes_are_named_with_file_and_key(text: str, part: str, tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from pydantic import ValidationError
 from deploy.demo.run import main as demo
 from station.__main__ import main
 from station.analysis.truth import read_truth
-from station.channel.zeromq import _MESSAGE
+from station.channel.request_socket import _MESSAGE
 from station.errors import RecordError, SettingsError
 from station.numbers import number, number_key, numbered, whole
 from station.settings.camera import PylonSettings
@@ -101,7 +101,7 @@ def test_no_setting_takes_a_value_of_another_type(place: tuple[str, ...], value:
         ("[recipes.2]\nmodel = { threads = true }\n", "threads"),
         ("[recipes.2.model.segment_thresholds]\n'٣' = 0.7\n", "'٣' is not"),
         ("[plc]\nallow = [5]\n", "plc.allow"),
-        ("[channel]\nhost = 2130706433\n", "channel.host"),
+        ("[channel]\nfolder = 2130706433\n", "channel.folder"),
         ("[weld]\nradius_mm = inf\n", "weld.radius_mm"),
     ],
 )

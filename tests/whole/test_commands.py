@@ -188,13 +188,12 @@ def test_check_says_what_is_wrong(tmp_path: Path) -> None:
 
 
 def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> None:
-    plc, events, preview, requests = free_ports(4)
+    plc = free_ports(1)[0]
     path = tmp_path / "station.toml"
     path.write_text(
         SETTINGS
         + f'[model]\npath = "{MODEL}"\nring_path = "{RING_MODEL}"\nseen_path = "{SEEN_MODEL}"\n'
         + f"[plc]\nport = {plc}\n"
-        + f"[channel]\nevents_port = {events}\npreview_port = {preview}\nrequests_port = {requests}\n"
     )
     engine = subprocess.Popen(
         [sys.executable, "-m", "station", "engine", "-c", str(path)],
@@ -203,7 +202,7 @@ def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> No
         stderr=subprocess.PIPE,
         text=True,
     )
-    subscriber = Subscriber(ChannelSettings(events_port=events, preview_port=preview))
+    subscriber = Subscriber(ChannelSettings(folder=tmp_path / "channel"))
     try:
         until, heard = time.monotonic() + 300, None
         while time.monotonic() < until and heard is None:

@@ -598,6 +598,14 @@
         <translation>keine Fehlerkarte: ein anderes Modell hat dieses Teil beurteilt</translation>
     </message>
     <message>
+        <source>setup images</source>
+        <translation>Einrichtbilder</translation>
+    </message>
+    <message>
+        <source>over</source>
+        <translation>vorbei</translation>
+    </message>
+    <message>
         <source>another user logged in</source>
         <translation>anderer Benutzer angemeldet</translation>
     </message>

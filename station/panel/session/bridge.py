@@ -3,8 +3,9 @@
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from station.channel.events import PartEvent, StatusEvent
+from station.channel.request_socket import RequestClient
 from station.channel.requests import Message
-from station.channel.zeromq import RequestClient, Subscriber
+from station.channel.zeromq import Subscriber
 
 POLL_MS = 30
 
