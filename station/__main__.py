@@ -125,6 +125,7 @@ def _parser() -> argparse.ArgumentParser:
         _check,
         "check settings, models, archive, camera and PLC; report what is wrong and what to do",
     )
+    add("commission", _commission, "make a code by which the first administrator can log in")
     about = "list, verify, prune, export and report the records of an archive"
     add_commands(commands.add_parser("records", help=about, description=_sentence(about)))
     registers = add(
@@ -219,6 +220,12 @@ def _check(arguments: argparse.Namespace) -> int:
         for change in words(arguments.settings):
             print(f"note changed at the station, overrides {arguments.settings.name}: {change}")
     return 1 if problems else 0
+
+
+def _commission(arguments: argparse.Namespace) -> int:
+    from station.cli.commission import commission
+
+    return commission(arguments.settings)
 
 
 def _registers(arguments: argparse.Namespace) -> int:

@@ -15,12 +15,13 @@ from station.engine.orders import Order, OrderQueue, Reload, UseSettings
 from station.engine.settings_use import use_settings
 from station.errors import CameraLost
 from station.inspection.loading import Loaded
-from station.journal.accounts import save_user
+from station.journal.accounts import Accounts
 from station.journal.users import Level, users
 from station.settings.camera import AnyCamera
 from station.settings.file import load
+from station.settings.keys import keys_folder
 
-PIN = "1234"
+PIN = "123456"
 
 
 class StubCamera:
@@ -85,9 +86,10 @@ class Desk:
     def knows(self, name: str, level: Level) -> None:
         """Add a user with the common PIN; an administrator is added before the first one."""
         folder = self.active.settings.archive.folder
+        accounts = Accounts(folder, keys_folder(self.path))
         if not users(folder):
-            save_user(folder, "Root", level=Level.ADMIN, pin=PIN, by="Root")
-        save_user(folder, name, level=level, pin=PIN, by="Root")
+            accounts.save_user("Root", level=Level.ADMIN, pin=PIN, by="Root")
+        accounts.save_user(name, level=level, pin=PIN, by="Root")
 
     def close(self) -> None:
         self.requests.close()

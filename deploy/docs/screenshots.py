@@ -25,7 +25,7 @@ from deploy.demo.ports import free_ports
 from deploy.demo.station import running, shipped_parts, station_toml
 from deploy.demo.summary import DemoPart
 from station.channel.requests import HoldService
-from station.journal.accounts import save_user
+from station.journal.accounts import Accounts
 from station.journal.review_writer import save_review
 from station.journal.reviews import Opinion
 from station.journal.users import Level
@@ -33,6 +33,7 @@ from station.panel.app import open_window
 from station.panel.pages.table import PageKey
 from station.panel.window import Window
 from station.plc.simulated.line import SimulatedLine
+from station.settings.keys import keys_folder
 from synth.camera.feed import Feed
 
 NOK_PLACES = (3, 7, 10)
@@ -83,7 +84,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         window = open_window(settings)
         window.resize(width, height)
         window.show()
-        _save_users(window)
+        _save_users(window, settings)
         line.start()
         _wait(line.passed.is_set)
         _give_reviews(window)
@@ -156,15 +157,16 @@ def _station(folder: Path) -> Iterator[tuple[Path, _Line]]:
                 line.join()
 
 
-def _save_users(window: Window) -> None:
+def _save_users(window: Window, settings: Path) -> None:
     folder = window.session.received.folder
     _wait(lambda: folder.is_dir())
+    accounts = Accounts(folder, keys_folder(settings))
     for name, level, pin in (
-        ("Ada Admin", Level.ADMIN, "1234"),
-        ("Quentin Quality", Level.QUALITY, "2345"),
+        ("Ada Admin", Level.ADMIN, "123456"),
+        ("Quentin Quality", Level.QUALITY, "234567"),
         ("Sam Setter", Level.SETTER, "3456"),
     ):
-        save_user(folder, name, level=level, pin=pin, by="Ada Admin")
+        accounts.save_user(name, level=level, pin=pin, by="Ada Admin")
 
 
 def _give_reviews(window: Window) -> None:
@@ -191,7 +193,7 @@ def _show(window: Window, view: str, page: PageKey, tab: int) -> None:
     window.go(page)
     session = window.session
     if view.startswith("setup") and session.account.user is None and view != "setup-login":
-        session.account.log_in("Ada Admin", "1234", lambda _: None)
+        session.account.log_in("Ada Admin", "123456", lambda _: None)
         _wait(lambda: session.account.user is not None)
     shown = window.page
     if page is PageKey.SETUP:

@@ -44,7 +44,8 @@ SPOKEN: Mapping[str, tuple[str, ...]] = {
     "station.engine.operator_requests": ("WeldgateError",),
     "station.engine.settings_change": ("append", "SettingsError", "NOT_IN_FILE", "DIFFERENT_IN_FILE"),
     "station.engine.settings_use": ("SettingsError", "RELOAD_REFUSED"),
-    "station.journal.accounts": ("LoginError",),
+    "station.journal.accounts": ("LoginError", "WRONG", "WRONG_CODE", "NO_USERS", "TOO_SHORT", "reason"),
+    "station.journal.pins": ("LoginError",),
     "station.journal.review_writer": ("LoginError",),
     "station.plc.bus_log": ("note", "why", "_plc_note", "_station_note"),
 }

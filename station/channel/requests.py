@@ -28,10 +28,11 @@ Text = Annotated[str, Field(max_length=1000)]
 
 @dataclass(frozen=True, slots=True)
 class LogIn:
-    """Request to log in by name and PIN; at a station without users this makes the first administrator."""
+    """Request to log in by name and PIN; with a commissioning code it first makes an administrator."""
 
     name: Name
     pin: Annotated[str, Field(max_length=20)] = field(repr=False)
+    code: Annotated[str, Field(max_length=30)] = field(default="", repr=False)
     type: Literal["log in"] = "log in"
 
 

@@ -38,11 +38,11 @@ from station.engine.logins import Logins
 from station.engine.rights import check
 from station.engine.service_mode import LEASE_S
 from station.errors import LoginError, RecordError, WeldgateError
-from station.journal import accounts
+from station.journal.accounts import Accounts
 from station.journal.journal import Kind, entries
 from station.journal.journal_writer import append
 from station.journal.review_writer import save_review
-from station.journal.users import Level, User, users
+from station.journal.users import Level, User
 from station.plc.map.registers import Status
 from station.plc.port import Counts
 
@@ -79,14 +79,15 @@ class OperatorDesk:
         self,
         folder: Path,
         logins: Logins,
+        accounts: Accounts,
         *,
         hand_over: Callable[[orders.Order], None],
         counts: Callable[[], Counts | None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`folder`: the archive; `hand_over` gives an order to the cycle; `counts` returns the counters."""
-        self._folder, self._logins, self._hand_over, self._counts = folder, logins, hand_over, counts
-        self._clock = clock
+        self._folder, self._logins, self._accounts = folder, logins, accounts
+        self._hand_over, self._counts, self._clock = hand_over, counts, clock
         self._lease: _Lease | None = None
 
     def handle(self, message: Message, reply: Reply, change: Start, *, source: str = "") -> None:
@@ -120,9 +121,10 @@ class OperatorDesk:
 
     def _log_in(self, message: Message, request: LogIn, source: str) -> Answer:
         name = request.name.strip()
-        if not users(self._folder):
-            accounts.save_user(self._folder, name, level=Level.ADMIN, pin=request.pin, by=name)
-        user = accounts.log_in(self._folder, name, request.pin, source=source)
+        if request.code:
+            user = self._accounts.commission(name, request.pin, request.code, source=source)
+        else:
+            user = self._accounts.log_in(name, request.pin, source=source)
         self._log_out(message.token, "another user logged in")
         token = self._logins.begin(user, self._clock())
         return Answer(message.request_id, logged_in=True, token=token, name=user.name, level=user.level)
@@ -133,7 +135,7 @@ class OperatorDesk:
             self._end_service(why)
         if (user := self._logins.end(token)) is not None:
             with suppress(RecordError):
-                accounts.log_out(self._folder, user, why)
+                self._accounts.log_out(user, why)
 
     def _carry_out(self, request: Request, user: User, token: str) -> None:
         """Carry out a request that the user may make. Raises WeldgateError if it was not carried out."""
@@ -143,12 +145,10 @@ class OperatorDesk:
             case LogOut():
                 self._log_out(token, request.why)
             case SaveUser():
-                accounts.save_user(
-                    self._folder, request.name, level=request.level, pin=request.pin, by=user.name
-                )
+                self._accounts.save_user(request.name, level=request.level, pin=request.pin, by=user.name)
                 self._end_logins_of(request.name.strip())
             case RemoveUser():
-                accounts.remove_user(self._folder, request.name, by=user.name)
+                self._accounts.remove_user(request.name, by=user.name)
                 self._end_logins_of(request.name)
             case Acknowledge():
                 self._acknowledge(request, user)

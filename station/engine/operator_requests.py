@@ -16,7 +16,9 @@ from station.engine.operator_desk import OperatorDesk, Reply
 from station.engine.orders import Order
 from station.engine.settings_change import SettingsChange
 from station.errors import WeldgateError
+from station.journal.accounts import Accounts
 from station.plc.port import Counts
+from station.settings.keys import keys_folder
 
 log = logging.getLogger("weldgate.requests")
 
@@ -38,9 +40,9 @@ class OperatorRequests:
         self._server, self._stop = server, threading.Event()
         self._status: StatusEvent | None = None
         logins = Logins(lambda: active.settings.panel.logout_min * 60)
-        self._desk = OperatorDesk(
-            active.settings.archive.folder, logins, hand_over=hand_over, counts=self._counts
-        )
+        folder = active.settings.archive.folder
+        accounts = Accounts(folder, keys_folder(path))
+        self._desk = OperatorDesk(folder, logins, accounts, hand_over=hand_over, counts=self._counts)
         self._change = SettingsChange(path, active, hand_over=hand_over, recipe=self._recipe, stop=self._stop)
         self._answers: queue.SimpleQueue[tuple[int, Answer]] = queue.SimpleQueue()
         self._changes: queue.Queue[Callable[[], None]] = queue.Queue(MAX_CHANGES)

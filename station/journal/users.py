@@ -37,6 +37,8 @@ class StoredUser:
     level: Level
     salt: str
     hash: str
+    keyed: bool = False
+    """True if the hash is made with the key of the installation, False for PINs of earlier versions."""
 
 
 _USER = TypeAdapter(StoredUser)

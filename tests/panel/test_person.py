@@ -15,7 +15,8 @@ from deploy.demo.ports import free_ports
 from deploy.demo.station import running, shipped_parts, station_toml
 from station.defects import KINDS
 from station.files.image import read_image
-from station.journal.accounts import save_user
+from station.journal.accounts import Accounts
+from station.journal.commissioning import make_code
 from station.journal.journal import Kind, entries
 from station.journal.reviews import Opinion, State, reviews
 from station.journal.users import Level
@@ -30,7 +31,9 @@ from station.plc.map.alarms import Alarm
 from station.plc.map.registers import VerdictCode
 from station.plc.simulated.line import Answer, SimulatedLine
 from station.settings import adjustments
+from station.settings.keys import keys_folder
 from synth.camera.feed import Feed
+from tests.desk import PIN
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -96,6 +99,8 @@ def log_in(window: Window, qtbot: QtBot, name: str, pin: str) -> SetupPage:
     assert isinstance(setup, SetupPage)
     setup.show_tab(setup.login)
     setup.login.name.setEditText(name)
+    if setup.login.code.isVisibleTo(setup.login):  # nobody has this name yet
+        setup.login.code.setText(make_code(keys_folder(window.session.received._path)))
     setup.login.pin.clear()
     qtbot.keyClicks(setup.login.pin, pin)
     qtbot.mouseClick(setup.login.log_in, LEFT)
@@ -114,10 +119,11 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     qtbot.waitUntil(lambda: len(session.received.parts) == 4, timeout=5000)
 
     # the first to log in becomes administrator, and makes the other users
-    log_in(window, qtbot, "Ada", "1234")
+    log_in(window, qtbot, "Ada", PIN)
     assert session.account.user is not None
     assert session.account.user.level is Level.ADMIN
-    save_user(folder, "Quentin", level=Level.QUALITY, pin="2345", by="Ada")
+    accounts = Accounts(folder, keys_folder(path))
+    accounts.save_user("Quentin", level=Level.QUALITY, pin="234567", by="Ada")
 
     # find a NOK, look at it, review it, the second person too
     window.go(PageKey.HISTORY)
@@ -138,7 +144,7 @@ def test_a_day_at_the_station(station: tuple[Path, Line], window: Window, qtbot:
     assert not history.reviewing.opinions[Opinion.MISSED].isEnabled(), "a NOK part cannot have been missed"
 
     # change a threshold: what if first, then a reason
-    setup = log_in(window, qtbot, "Quentin", "2345")
+    setup = log_in(window, qtbot, "Quentin", "234567")
     give_second = history.reviewing.opinions[Opinion.FALSE_CALL]
     give_second.click()
     qtbot.waitUntil(lambda: reviews(folder)[number].agreed is Opinion.FALSE_CALL, timeout=5000)
@@ -193,7 +199,7 @@ def test_limits_that_the_station_refuses_are_undone(
     """Its stored frame would be too blurred for them: the station would not come up again."""
     path, line = station
     line.passes(qtbot, 1)
-    setup = log_in(window, qtbot, "Ada", "1234")
+    setup = log_in(window, qtbot, "Ada", PIN)
     setup.show_tab(setup.recipe)
     recipe = setup.recipe
     recipe.fields["min_sharpness"].edit.setText("5")
@@ -233,8 +239,9 @@ def test_a_record_whose_image_was_deleted_is_shown_as_such(
 
 def test_five_wrong_pins_lock_a_user_and_rights_depend_on_the_level(window: Window, qtbot: QtBot) -> None:
     folder = window.session.received.folder
-    save_user(folder, "Ada", level=Level.ADMIN, pin="1234", by="Ada")
-    save_user(folder, "Sam", level=Level.SETTER, pin="3456", by="Ada")
+    accounts = Accounts(folder, keys_folder(window.session.received._path))
+    accounts.save_user("Ada", level=Level.ADMIN, pin=PIN, by="Ada")
+    accounts.save_user("Sam", level=Level.SETTER, pin="3456", by="Ada")
     for _ in range(5):
         setup = log_in(window, qtbot, "Sam", "0000")
         assert setup.login.problem.text() == "unknown name or wrong PIN"
@@ -243,7 +250,7 @@ def test_five_wrong_pins_lock_a_user_and_rights_depend_on_the_level(window: Wind
     assert window.session.account.user is None
     assert not setup.people.save.isEnabled()
     assert not setup.camera.live.isEnabled()
-    log_in(window, qtbot, "Ada", "1234")
+    log_in(window, qtbot, "Ada", PIN)
     assert setup.people.save.isEnabled()
 
 
@@ -251,7 +258,7 @@ def test_service_mode_from_the_line_page_is_reported_to_the_plc_and_ends_with_th
     window: Window, qtbot: QtBot
 ) -> None:
     session = window.session
-    log_in(window, qtbot, "Ada", "1234")
+    log_in(window, qtbot, "Ada", PIN)
     window.go(PageKey.LINE)
     page = window.page
     qtbot.mouseClick(page.service, LEFT)  # type: ignore[attr-defined]
@@ -268,7 +275,7 @@ def test_service_mode_from_the_line_page_is_reported_to_the_plc_and_ends_with_th
 @pytest.mark.parametrize("station", ["[panel]\nlogout_min = 0.1\n"], indirect=True)
 def test_nobody_stays_logged_in_for_ever(window: Window, qtbot: QtBot) -> None:
     session = window.session
-    log_in(window, qtbot, "Ada", "1234")
+    log_in(window, qtbot, "Ada", PIN)
     assert session.account.user is not None
     qtbot.waitUntil(lambda: session.account.user is None, timeout=15_000)
     folder = session.received.folder
@@ -307,7 +314,7 @@ def test_recorded_parts_are_judged_again_in_the_window(
 ) -> None:
     _, line = station
     answers = line.passes(qtbot, 4)
-    log_in(window, qtbot, "Ada", "1234")
+    log_in(window, qtbot, "Ada", PIN)
     window.go(PageKey.REPLAY)
     page = window.page
     assert isinstance(page, ReplayPage)
@@ -339,7 +346,7 @@ def test_the_history_is_searched_by_time_and_review_and_written_as_a_table(
     _, line = station
     answers = line.passes(qtbot, 4)
     nok = [a.inspection_id for a in answers if a.verdict is VerdictCode.NOK]
-    log_in(window, qtbot, "Ada", "1234")
+    log_in(window, qtbot, "Ada", PIN)
     window.go(PageKey.HISTORY)
     page = window.page
     assert isinstance(page, HistoryPage)

@@ -20,7 +20,7 @@ from station.archive.writer import Archive
 from station.domain import Frame, Origin
 from station.engine.retention import prune_archive
 from station.files.regular import read_regular
-from station.journal.accounts import save_user
+from station.journal.accounts import Accounts
 from station.journal.journal import Kind
 from station.journal.journal_writer import append
 from station.journal.users import Level
@@ -43,7 +43,8 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
         part = Part(f"P{number}", number + 1, Origin.SIMULATED)
         archive.commit(archive.begin(frame), found, part, provenance(), now=NOW)
     archive.close()
-    save_user(folder, "Ada", level=Level.ADMIN, pin="1234", by="Ada")
+    accounts = Accounts(folder, folder.parent / "keys")
+    accounts.save_user("Ada", level=Level.ADMIN, pin="123456", by="Ada")
     append(folder, Kind.REVIEW, "Ada", "2", before="NOK", after="right")
     edge = (
         '{"time": "2026-11-22T12:00:00.000+00:00", "by": "PLC", "name": "TRIGGER", "value": 1, "note": ""}\n'

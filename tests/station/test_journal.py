@@ -5,22 +5,18 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import closing, contextmanager
-from datetime import UTC, datetime, timedelta
 from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
 
-import station.journal.accounts
 from station.__main__ import main
 from station.archive.reader import find
 from station.archive.schema import NAME as INDEX
 from station.archive.schema import open_index
-from station.errors import LoginError, RecordError
-from station.journal.accounts import log_in, log_out, remove_user, save_user
+from station.errors import RecordError
 from station.journal.journal import NAME, Kind, entries, verify_journal
 from station.journal.journal_writer import append
-from station.journal.users import Level, User, users
 
 
 def test_entries_are_found_by_kind_and_subject(tmp_path: Path) -> None:
@@ -122,60 +118,14 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
         append(tmp_path / "absent", Kind.LOGIN, "Ada")
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    save_user(tmp_path, "Ada", level=Level.ADMIN, pin="1234", by="Ada")
-    save_user(tmp_path, "Bob", level=Level.SETTER, pin="56789", by="Ada")
-    return tmp_path
-
-
-def test_users_come_go_and_change(folder: Path) -> None:
-    assert users(folder) == [User("Ada", Level.ADMIN), User("Bob", Level.SETTER)]
-    assert log_in(folder, "Bob", "56789") == User("Bob", Level.SETTER)
-    save_user(folder, "Bob", level=Level.QUALITY, pin="0000", by="Ada")
-    with pytest.raises(LoginError, match="wrong PIN"):
-        log_in(folder, "Bob", "56789")
-    log_out(folder, log_in(folder, "Bob", "0000"), "asked to")
-    remove_user(folder, "Bob", by="Ada")
-    assert users(folder) == [User("Ada", Level.ADMIN)]
-    with pytest.raises(LoginError, match="unknown name or wrong PIN"):
-        log_in(folder, "Bob", "0000")
-    told = [(e.kind, e.before) for e in entries(folder, (Kind.USER,), "Bob", newest_first=False)]
-    assert told == [(Kind.USER, ""), (Kind.USER, "setter"), (Kind.USER, "quality")]
-
-
-@pytest.mark.parametrize(
-    ("name", "level", "pin", "said"),
-    [
-        ("", Level.SETTER, "1234", "a name"),
-        ("Eve", Level.SETTER, "123", "a PIN of 4 to 12 digits"),
-        ("Eve", Level.SETTER, "12a4", "a PIN"),
-        ("Ada", Level.SETTER, "1234", "at least one administrator"),
-    ],
-)
-def test_users_that_cannot_be_are_refused(folder: Path, name: str, level: Level, pin: str, said: str) -> None:
-    with pytest.raises(LoginError, match=said):
-        save_user(folder, name, level=level, pin=pin, by="Ada")
-    with pytest.raises(LoginError, match="at least one administrator"):
-        remove_user(folder, "Ada", by="Ada")
-
-
-def test_five_wrong_pins_lock_for_a_minute_and_are_logged(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for _ in range(5):
-        with pytest.raises(LoginError, match="wrong PIN"):
-            log_in(folder, "Bob", "9999")
-    with pytest.raises(LoginError, match="locked for") as caught:
-        log_in(folder, "Bob", "56789")
-    assert 50 < caught.value.locked_s <= 60
-    assert log_in(folder, "Ada", "1234").name == "Ada", "others are not locked"
-    assert len(entries(folder, (Kind.LOGIN_FAILED,), "Bob")) == 5
-
-    class Later(datetime):
-        @classmethod
-        def now(cls, tz: object = None) -> datetime:  # type: ignore[override]
-            return datetime.now(UTC) + timedelta(seconds=61)
-
-    monkeypatch.setattr(station.journal.accounts, "datetime", Later)
-    assert log_in(folder, "Bob", "56789").level is Level.SETTER
+@pytest.mark.parametrize("before", [None, 0o644, 0o666, 0o604])
+def test_the_journal_is_not_for_everybody(tmp_path: Path, before: int | None) -> None:
+    if before is not None:
+        append(tmp_path, Kind.LOGIN, "Ada")
+        (tmp_path / NAME).chmod(before)
+    with closing(sqlite3.connect(tmp_path / NAME)) as other:
+        append(tmp_path, Kind.LOGIN, "Ada")
+        other.execute("SELECT * FROM entries").fetchall()
+        for path in tmp_path.glob(f"{NAME}*"):
+            if not path.name.endswith(".lock"):
+                assert not path.stat().st_mode & 0o007, path.name

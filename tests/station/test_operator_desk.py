@@ -41,9 +41,12 @@ from station.engine.operator_desk import FRESH_S, OTHER_IN_SERVICE, OperatorDesk
 from station.engine.rights import CHANGES, NEEDED, check, needed
 from station.engine.service_mode import LEASE_S
 from station.errors import LoginError, RecordError, SettingsError
-from station.journal.accounts import save_user
+from station.files.private import write_private
+from station.journal.accounts import NO_USERS, WRONG, WRONG_CODE, Accounts
+from station.journal.commissioning import make_code
 from station.journal.journal import Entry, Kind, entries
 from station.journal.journal_writer import append
+from station.journal.pins import KEY
 from station.journal.reviews import Opinion, reviews
 from station.journal.users import Level, User, users
 from station.plc.map.registers import Status
@@ -54,7 +57,7 @@ from tests.parts import label_with, nok_inspection, provenance
 
 IDLE_S = 600.0
 PEOPLE = {Level.OPERATOR: "Bob", Level.SETTER: "Sam", Level.QUALITY: "Quentin", Level.ADMIN: "Ada"}
-PIN = "1234"
+PIN = "123456"
 CAMERA = ChangeSettings((Changed(("camera", "gain_db"), 1.0),), "more light")
 LIMITS = ChangeSettings(
     (Changed(("recipes", "1", "model", "limits", "hole", "threshold"), 0.5),), "fewer holes"
@@ -92,6 +95,7 @@ class Desk:
         self.desk = OperatorDesk(
             self.folder,
             logins,
+            Accounts(self.folder, self.folder / "keys", clock=lambda: self.now_s),
             hand_over=self.given.append,
             counts=lambda: Counts(3, 1, 0),
             clock=lambda: self.now_s,
@@ -123,20 +127,21 @@ class Desk:
 
 
 @pytest.fixture(scope="module")
-def people(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+def people(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes]:
     """Return a journal with one user of each level; PINs are slow to hash."""
-    folder = tmp_path_factory.mktemp("people")
+    folder, keys = tmp_path_factory.mktemp("people"), tmp_path_factory.mktemp("keys")
+    accounts = Accounts(folder, keys)
     for level in sorted(Level, reverse=True):
-        save_user(folder, PEOPLE[level], level=level, pin=PIN, by="Ada")
+        accounts.save_user(PEOPLE[level], level=level, pin=PIN, by="Ada")
     append(folder, Kind.ALARM, "station", "16#3002")
 
     with closing(sqlite3.connect(folder / "journal.sqlite")) as connection:
         connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-    return (folder / "journal.sqlite").read_bytes()
+    return (folder / "journal.sqlite").read_bytes(), (keys / KEY).read_bytes()
 
 
 @pytest.fixture
-def desk(tmp_path: Path, people: bytes, frames: dict[str, Image]) -> Iterator[Desk]:
+def desk(tmp_path: Path, people: tuple[bytes, bytes], frames: dict[str, Image]) -> Iterator[Desk]:
     archive = Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1, thin_free_mb=1, warn_free_mb=1))
     frame = Frame(frames[label_with("hole")["frame"]], datetime.now(UTC), "cam", Origin.SIMULATED)
     archive.commit(
@@ -147,7 +152,8 @@ def desk(tmp_path: Path, people: bytes, frames: dict[str, Image]) -> Iterator[De
         now=frame.grabbed_at,
     )
     archive.close()
-    (tmp_path / "journal.sqlite").write_bytes(people)
+    (tmp_path / "journal.sqlite").write_bytes(people[0])
+    write_private(tmp_path / "keys" / KEY, people[1])
     return Desk(tmp_path)
 
 
@@ -233,13 +239,19 @@ def test_what_cannot_be_noted_is_not_done(desk: Desk, monkeypatch: pytest.Monkey
     assert desk.given == []
 
 
-def test_the_first_to_log_in_becomes_administrator_and_the_second_does_not(tmp_path: Path) -> None:
+def test_only_a_commissioning_code_makes_the_first_administrator(tmp_path: Path) -> None:
     desk = Desk(tmp_path)
-    assert desk.ask(LogIn("Ada", "12")).refusal == "a PIN of 4 to 12 digits is needed"
+    code = make_code(tmp_path / "keys")
+    assert desk.ask(LogIn("Ada", PIN)).refusal == NO_USERS
+    assert desk.ask(LogIn("Ada", PIN, "1234-5678-9012")).refusal == WRONG_CODE
+    assert desk.ask(LogIn("Ada", "1234", code)).refusal == "a PIN of 6 to 12 digits is needed"
     assert users(tmp_path) == []
-    assert desk.ask(LogIn(" Ada ", "1234")).level is Level.ADMIN
-    assert desk.ask(LogIn("Eve", "1234")).refusal == "unknown name or wrong PIN"
+    assert desk.ask(LogIn(" Ada ", PIN, code)).level is Level.ADMIN
+    assert desk.ask(LogIn("Eve", PIN, code)).refusal == WRONG_CODE
+    assert desk.ask(LogIn("Eve", PIN)).refusal == WRONG
     assert users(tmp_path) == [User("Ada", Level.ADMIN)]
+    (tmp_path / "journal.sqlite").unlink()
+    assert desk.ask(LogIn("Eve", PIN)).refusal == NO_USERS, "a deleted journal opens no door"
 
 
 def test_five_wrong_pins_lock_whatever_window_they_come_from(desk: Desk) -> None:

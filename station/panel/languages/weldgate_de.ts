@@ -634,6 +634,38 @@
         <translation>Einstellungsdatei nicht verwendbar: siehe Protokoll der Engine. Die bisherigen Einstellungen bleiben aktiv.</translation>
     </message>
     <message>
+        <source>there are no users yet: enter the code that &apos;weldgate commission&apos; makes</source>
+        <translation>es gibt noch keine Benutzer: den Code eingeben, den „weldgate commission“ erzeugt</translation>
+    </message>
+    <message>
+        <source>this PIN is too short for the level: an administrator must set one of 6 digits</source>
+        <translation>diese PIN ist zu kurz für die Stufe: ein Administrator muss eine mit 6 Ziffern setzen</translation>
+    </message>
+    <message>
+        <source>this name exists: enter another one for the new administrator</source>
+        <translation>diesen Namen gibt es: für den neuen Administrator einen anderen eingeben</translation>
+    </message>
+    <message>
+        <source>wrong commissioning code: &apos;weldgate commission&apos; makes one</source>
+        <translation>falscher Inbetriebnahme-Code: „weldgate commission“ erzeugt einen</translation>
+    </message>
+    <message>
+        <source>commissioning code</source>
+        <translation>Inbetriebnahme-Code</translation>
+    </message>
+    <message>
+        <source>too short</source>
+        <translation>zu kurz</translation>
+    </message>
+    <message>
+        <source>a PIN of 4 to 12 digits is needed</source>
+        <translation>eine PIN von 4 bis 12 Ziffern ist nötig</translation>
+    </message>
+    <message>
+        <source>a PIN of 6 to 12 digits is needed</source>
+        <translation>eine PIN von 6 bis 12 Ziffern ist nötig</translation>
+    </message>
+    <message>
         <source>PLC_HEARTBEAT does not change</source>
         <translation>PLC_HEARTBEAT ändert sich nicht</translation>
     </message>
@@ -664,10 +696,6 @@
     <message>
         <source>a name of 1 to 40 characters is needed</source>
         <translation>ein Name von 1 bis 40 Zeichen ist nötig</translation>
-    </message>
-    <message>
-        <source>a PIN of 4 to 12 digits is needed</source>
-        <translation>eine PIN von 4 bis 12 Ziffern ist nötig</translation>
     </message>
     <message>
         <source>at least one administrator is needed</source>
@@ -1288,6 +1316,10 @@
         <translation>Name</translation>
     </message>
     <message>
+        <source>commissioning code</source>
+        <translation>Inbetriebnahme-Code</translation>
+    </message>
+    <message>
         <source>PIN</source>
         <translation>PIN</translation>
     </message>
@@ -1296,8 +1328,8 @@
         <translation>Niemand ist angemeldet.</translation>
     </message>
     <message>
-        <source>There are no users yet. The first person to enter a name and a PIN of 4 to 12 digits becomes administrator.</source>
-        <translation>Noch sind keine Benutzer angelegt. Wer als Erster einen Namen und eine PIN mit 4 bis 12 Ziffern eingibt, wird Administrator.</translation>
+        <source>There are no users yet. &apos;weldgate commission&apos; on this computer shows a code; with it, enter a name and a PIN of 6 to 12 digits to become administrator.</source>
+        <translation>Es gibt noch keine Benutzer. „weldgate commission“ zeigt auf diesem Rechner einen Code; damit Name und PIN von 6 bis 12 Ziffern eingeben, um Administrator zu werden.</translation>
     </message>
     <message>
         <source>Anyone can watch; every action needs a login. Five wrong PINs lock a user for one minute.</source>
@@ -1402,10 +1434,6 @@
         <translation>Entfernen</translation>
     </message>
     <message>
-        <source>PIN (4 to 12 digits)</source>
-        <translation>PIN (4 bis 12 Ziffern)</translation>
-    </message>
-    <message>
         <source>Operator: reviews. Setter: camera, service mode, masters. Quality: limits of the recipes. Administrator: users. Each level includes the levels before it.</source>
         <translation>Bediener: Nachprüfung. Einrichter: Kamera, Service-Betrieb, Meisterteile. Qualität: Grenzwerte der Rezepte. Administrator: Benutzer. Jede Stufe umfasst die Stufen davor.</translation>
     </message>
@@ -1420,6 +1448,10 @@
     <message>
         <source>add or change</source>
         <translation>anlegen oder ändern</translation>
+    </message>
+    <message>
+        <source>PIN (4 to 12 digits; 6 from quality on)</source>
+        <translation>PIN (4 bis 12 Ziffern; 6 ab Qualität)</translation>
     </message>
     <message>
         <source>Really remove?</source>

@@ -43,8 +43,13 @@ class Account(QObject):
         """Send a request in the name of the user who is logged in; `then` is called once with the answer."""
         self._requests.ask(request, self._state.token, then, owner)
 
-    def log_in(self, name: str, pin: str, then: Then, owner: QObject | None = None) -> None:
-        """Ask for a login; it lasts until logout, another login, or a time without use of the window."""
+    def log_in(
+        self, name: str, pin: str, then: Then, owner: QObject | None = None, *, code: str = ""
+    ) -> None:
+        """Ask for a login; it lasts until logout, another login, or a time without use of the window.
+
+        `code`: commissioning code that makes this user an administrator first, or empty.
+        """
         reply = guarded(then, owner)
 
         def answered(answer: Answer) -> None:
@@ -54,7 +59,7 @@ class Account(QObject):
                 self.changed.emit()
             reply(answer)
 
-        self.ask(LogIn(name, pin), answered)
+        self.ask(LogIn(name, pin, code), answered)
 
     def log_out(self) -> None:
         """End the login, and service mode with it."""

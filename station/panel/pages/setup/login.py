@@ -1,6 +1,6 @@
 """The tab Login: name and PIN, with keys that can be used with gloves.
 
-The first user of a station becomes its administrator.
+A commissioning code makes a new name an administrator, above all the first one.
 """
 
 from PySide6.QtCore import Qt
@@ -17,10 +17,10 @@ from PySide6.QtWidgets import (
 
 from station.channel.requests import Answer
 from station.errors import RecordError
-from station.journal.users import users
+from station.journal.users import User, users
 from station.panel.look.words import data, translate
 from station.panel.pages.page import Page
-from station.panel.pages.setup.login_view import Notice, login_view, notice
+from station.panel.pages.setup.login_view import Notice, login_view, needs_code, notice
 from station.panel.session.session import Session
 from station.panel.widgets.card import Choice, label, titled
 
@@ -31,11 +31,14 @@ class LoginPage(Page):
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self.name, self.pin = Choice(), QLineEdit()
+        self.name, self.pin, self.code = Choice(), QLineEdit(), QLineEdit()
+        self._known: tuple[User, ...] = ()
         self.name.setEditable(True)
         self.name.setMinimumWidth(260)
         self.pin.setEchoMode(QLineEdit.EchoMode.Password)
         self.pin.setMaxLength(12)
+        self.code.setMaxLength(14)
+        self.name.currentTextChanged.connect(self._on_name)
         self.log_in, self.log_out = (
             QPushButton(translate("login", "Log in")),
             QPushButton(translate("login", "Log out")),
@@ -45,8 +48,9 @@ class LoginPage(Page):
         self.log_out.clicked.connect(session.account.log_out)
         self._who, self.problem = label("", "title"), label("", "problem", wrap=True)
         form_box = QWidget()
-        form = QFormLayout(form_box)
+        self._form = form = QFormLayout(form_box)
         form.addRow(translate("login", "name"), self.name)
+        form.addRow(translate("login", "commissioning code"), self.code)
         form.addRow(translate("login", "PIN"), self.pin)
         keys = QGridLayout()
         for index, key in enumerate("123456789⌫0↵"):
@@ -80,12 +84,16 @@ class LoginPage(Page):
         super().showEvent(event)
 
     def _press(self, key: str) -> None:
+        field = self.code if self.code.hasFocus() else self.pin
         if key == "⌫":
-            self.pin.backspace()
+            field.backspace()
         elif key == "↵":
             self._log_in()
         else:
-            self.pin.insert(key)
+            field.insert(key)
+
+    def _on_name(self, name: str) -> None:
+        self._form.setRowVisible(self.code, needs_code(self._known, name.strip()))
 
     def _on_user(self) -> None:
         user = self._session.account.user
@@ -98,7 +106,7 @@ class LoginPage(Page):
             else f"{user.name} · {data(user.level.name.lower())}"
         )
         try:
-            known = users(self._session.received.folder)
+            self._known = known = tuple(users(self._session.received.folder))
         except RecordError as error:
             self.problem.setText(str(error))
             return
@@ -109,8 +117,8 @@ class LoginPage(Page):
         self._hint.setText(
             translate(
                 "login",
-                "There are no users yet. The first person to enter a name and a PIN of 4 to 12 digits "
-                "becomes administrator.",
+                "There are no users yet. 'weldgate commission' on this computer shows a code; with it, enter "
+                "a name and a PIN of 6 to 12 digits to become administrator.",
             )
             if view.first
             else translate(
@@ -121,15 +129,19 @@ class LoginPage(Page):
         self.name.clear()
         self.name.addItems(view.names)
         self.name.setEditText(view.chosen)
+        self._on_name(view.chosen)
 
     def _log_in(self) -> None:
         name, pin = self.name.currentText().strip(), self.pin.text()
+        code = self.code.text().strip() if needs_code(self._known, name) else ""
         self.pin.clear()
         self.log_in.setEnabled(False)
-        self._session.account.log_in(name, pin, self._on_answer, self)
+        self._session.account.log_in(name, pin, self._on_answer, self, code=code)
 
     def _on_answer(self, answer: Answer) -> None:
         self.log_in.setEnabled(True)
+        if answer.done:
+            self.code.clear()
         if notice(answer) is Notice.LOCKED:
             self.problem.setText(translate("login", "Locked for one minute after five wrong PINs."))
         elif notice(answer) is Notice.REFUSED:

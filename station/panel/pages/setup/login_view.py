@@ -21,7 +21,7 @@ class LoginView:
     """Choices of the tab."""
 
     first: bool
-    """True if there are no users: the first to log in becomes administrator."""
+    """True if there are no users: the first needs a commissioning code."""
     names: tuple[str, ...]
     """Names to choose from."""
     chosen: str
@@ -32,6 +32,11 @@ def login_view(known: Sequence[User], typed: str) -> LoginView:
     """Return what the tab offers; a name that was typed stays."""
     names = tuple(user.name for user in known)
     return LoginView(not names, names, typed or (names[0] if names else ""))
+
+
+def needs_code(known: Sequence[User], typed: str) -> bool:
+    """Return whether a name is of nobody yet, who can only log in with a commissioning code."""
+    return not known or (bool(typed) and all(user.name != typed for user in known))
 
 
 def notice(answer: Answer) -> Notice:

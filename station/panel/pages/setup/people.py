@@ -31,7 +31,7 @@ class PeoplePage(Page):
         form = QFormLayout(box)
         form.addRow(translate("people", "name"), self.name)
         form.addRow(translate("people", "level"), self.level)
-        form.addRow(translate("people", "PIN (4 to 12 digits)"), self.pin)
+        form.addRow(translate("people", "PIN (4 to 12 digits; 6 from quality on)"), self.pin)
         buttons = QHBoxLayout()
         buttons.addWidget(self.save)
         buttons.addWidget(self.remove)
