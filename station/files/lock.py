@@ -1,6 +1,10 @@
-"""Locks between processes; the only file that imports filelock."""
+"""Locks between processes; the only file that imports filelock.
+
+Who may read a lock file may hold the lock, so only accounts that may write it can read it.
+"""
 
 import os
+import stat
 import threading
 import time
 from collections.abc import Iterator
@@ -26,6 +30,7 @@ def hold(path: Path) -> "BaseFileLock":
         lock.acquire()
     except Timeout:
         raise BlockingIOError(f"{path}: held by another process") from None
+    _close_to_others(path)
     return lock
 
 
@@ -36,7 +41,8 @@ def turn(path: Path, patience_s: float) -> Iterator[None]:
     The kernel wakes those who wait, so that each gets its turn; who asks from time to time may never find the
     lock free. Raises BlockingIOError after `patience_s`, OSError if the file cannot be locked.
     """
-    handle = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0), 0o666)
+    handle = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0), 0o660)
+    _close_to_others(path)
     waiting = _Waiting(handle)
     try:
         if not waiting.lock(patience_s):
@@ -44,6 +50,15 @@ def turn(path: Path, patience_s: float) -> Iterator[None]:
         yield
     finally:
         waiting.close()
+
+
+def _close_to_others(path: Path) -> None:
+    """Take the right to read a lock file, which is enough to hold its lock, from who may not write it."""
+    with suppress(OSError):  # it belongs to another account, which closes it
+        mode = stat.S_IMODE(path.stat().st_mode)
+        closed = mode & ~(0o007 if mode & stat.S_IWGRP else 0o077)
+        if closed != mode:
+            path.chmod(closed)
 
 
 class _Waiting:

@@ -50,6 +50,7 @@ def read_private(path: Path) -> bytes:
         bits = OTHERS if place is path else stat.S_IWGRP | stat.S_IWOTH
         if status.st_mode & bits:
             raise PermissionError(1, f"other accounts may {what}; run 'chmod go-rwx' on it", str(place))
-        if hasattr(os, "geteuid") and status.st_uid not in (0, os.geteuid()):
+        mine = not hasattr(os, "geteuid") or os.geteuid() == 0 or status.st_uid in (0, os.geteuid())
+        if not mine:
             raise PermissionError(1, "belongs to another account", str(place))
     return read_regular(path, MAX_BYTES)

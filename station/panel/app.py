@@ -21,7 +21,7 @@ from station.settings.file import load
 def open_window(path: Path) -> Window:
     """Return the window for a settings file, not yet shown. A QApplication must exist.
 
-    Raises SettingsError.
+    Raises SettingsError, LineError if this account may not use the channel.
     """
     settings = load(path)
     words.use(settings.panel.language)

@@ -1,6 +1,7 @@
 """Users, their PINs and the commissioning code: what is counted, when it is checked, who can read what."""
 
 import json
+import os
 import sqlite3
 import threading
 from collections.abc import Iterator
@@ -22,6 +23,7 @@ from station.journal.journal_writer import append
 from station.journal.pins import KEY
 from station.journal.tries import LOCKED_S, TRIES, Tries
 from station.journal.users import Level, User, users
+from station.settings.file import load
 from station.settings.keys import keys_folder
 from tests.station.test_settings import GOOD
 
@@ -292,3 +294,19 @@ def test_the_command_makes_a_code_that_works_once(tmp_path: Path, capsys: pytest
     for place in keys_folder(path).iterdir():
         assert not place.stat().st_mode & 0o077
     assert [place.name for place in keys_folder(path).iterdir()] == [KEY]
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
+def test_a_code_that_root_makes_belongs_to_the_account_of_the_engine(tmp_path: Path) -> None:
+    """It was the usual way, and then the engine could not read it."""
+    path = tmp_path / "station.toml"
+    path.write_text(GOOD)
+    archive = load(path).archive.folder
+    archive.mkdir(parents=True, exist_ok=True)
+    os.chown(archive, 65534, 65534)
+    try:
+        assert main(["commission", "-c", str(path)]) == 0
+        for place in (keys_folder(path), *keys_folder(path).iterdir()):
+            assert (place.stat().st_uid, place.stat().st_mode & 0o077) == (65534, 0)
+    finally:
+        archive.rmdir()

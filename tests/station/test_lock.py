@@ -13,14 +13,32 @@ import pytest
 
 from station.archive.writer import Archive
 from station.errors import RecordError
-from station.files.lock import hold
+from station.files.lock import hold, turn
 from station.settings.model import ArchiveSettings
 from tests.conftest import ROOT
+
+
+@pytest.mark.parametrize("before", [None, 0o644, 0o664, 0o666])
+def test_who_may_not_write_a_lock_file_cannot_hold_its_lock(tmp_path: Path, before: int | None) -> None:
+    """To read a file is enough to lock it: any account stalled the journal and the index."""
+    for name in ("turn.lock", "hold.lock"):
+        path = tmp_path / name
+        if before is not None:
+            path.touch()
+            path.chmod(before)
+        if name == "turn.lock":
+            with turn(path, 1.0):
+                mode = path.stat().st_mode & 0o777
+        else:
+            hold(path).release()
+            mode = path.stat().st_mode & 0o777
+        assert mode == (0o660 if before in (0o664, 0o666) else 0o600)
+
 
 HOLDER = """
 import sys
 from pathlib import Path
-from station.files.lock import hold
+from station.files.lock import hold, turn
 lock = hold(Path(sys.argv[1]))
 print("held", flush=True)
 sys.stdin.read()
