@@ -8,14 +8,17 @@ mode or is recovered, and it asks so rarely that one of many writers may never f
 import os
 import random
 import sqlite3
+import stat
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import TypeVar
 
 from station.files.lock import turn
 
+MODE, OTHERS = 0o640, 0o007
+"""Mode of a new database, and the bits that none has."""
 PATIENCE_S = 5.0
 """Time to wait for other processes that use the same file."""
 PAUSE_S = (0.001, 0.008)
@@ -56,6 +59,8 @@ def connect_to_write(path: Path, *, any_thread: bool = False) -> sqlite3.Connect
     Raises sqlite3.Error.
     """
 
+    _close_to_others(path)
+
     def connect() -> sqlite3.Connection:
         connection = sqlite3.connect(
             path, timeout=0.0, isolation_level=None, check_same_thread=not any_thread
@@ -69,6 +74,21 @@ def connect_to_write(path: Path, *, any_thread: bool = False) -> sqlite3.Connect
         return connection
 
     return patiently(connect)
+
+
+def _close_to_others(path: Path) -> None:
+    """Make the files of a database readable by owner and group only; create it empty if it is missing.
+
+    Who may read them may hold the locks of SQLite, and so stall the writer.
+    """
+    with suppress(OSError):  # what is wrong with the file is said by SQLite
+        os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, MODE))
+    for suffix in ("", "-wal", "-shm"):
+        with suppress(OSError):
+            file = path.with_name(path.name + suffix)
+            mode = stat.S_IMODE(file.stat().st_mode)
+            if mode & OTHERS:
+                file.chmod(mode & ~OTHERS)
 
 
 @contextmanager

@@ -1,9 +1,6 @@
 """Writes the journal; used by the engine only, windows send requests to the engine."""
 
-import os
 import sqlite3
-import stat
-from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -11,8 +8,6 @@ from station.errors import RecordError
 from station.files.sqlite import CHAIN_START, opened_for_writing
 from station.journal.journal import COLUMNS, NAME, Entry, Kind, link_entry
 
-MODE, OTHERS = 0o640, 0o007
-"""Mode of a new journal, and the bits that no journal has: it names people and holds hashes of PINs."""
 SCHEMA = (
     """CREATE TABLE IF NOT EXISTS entries (
     number INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -49,7 +44,6 @@ def append(
         reason=reason,
     )
     try:
-        protect(folder)
         with opened_for_writing(folder / NAME) as connection:
             for statement in SCHEMA:
                 connection.execute(statement)
@@ -60,21 +54,6 @@ def append(
             connection.execute(
                 f"INSERT INTO entries ({', '.join(COLUMNS)}, chain) VALUES ({marks})", [*values, chain]
             )
-    except (sqlite3.Error, OSError) as error:
+    except sqlite3.Error as error:
         raise RecordError(f"{folder / NAME}: cannot be written ({error}); nothing was changed") from None
     return entry
-
-
-def protect(folder: Path) -> None:
-    """Make the journal readable only by its owner and group; create it empty if it is missing.
-
-    Raises OSError.
-    """
-    path = folder / NAME
-    with suppress(FileExistsError):
-        os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, MODE))
-    for name in (NAME, *(f"{NAME}-{suffix}" for suffix in ("wal", "shm"))):
-        with suppress(FileNotFoundError):
-            mode = stat.S_IMODE((folder / name).stat().st_mode)
-            if mode & OTHERS:
-                (folder / name).chmod(mode & ~OTHERS)

@@ -119,13 +119,24 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("before", [None, 0o644, 0o666, 0o604])
-def test_the_journal_is_not_for_everybody(tmp_path: Path, before: int | None) -> None:
+@pytest.mark.parametrize("name", [NAME, INDEX])
+def test_no_database_is_for_everybody(tmp_path: Path, name: str, before: int | None) -> None:
+    """The journal holds hashes of PINs, and who may read the index may hold a lock that its writer needs."""
+
+    def write() -> None:
+        if name == NAME:
+            append(tmp_path, Kind.LOGIN, "Ada")
+        else:
+            open_index(tmp_path).close()
+
     if before is not None:
-        append(tmp_path, Kind.LOGIN, "Ada")
-        (tmp_path / NAME).chmod(before)
-    with closing(sqlite3.connect(tmp_path / NAME)) as other:
-        append(tmp_path, Kind.LOGIN, "Ada")
-        other.execute("SELECT * FROM entries").fetchall()
-        for path in tmp_path.glob(f"{NAME}*"):
-            if not path.name.endswith(".lock"):
-                assert not path.stat().st_mode & 0o007, path.name
+        write()
+        (tmp_path / name).chmod(before)
+    with closing(sqlite3.connect(tmp_path / name)) as other:
+        write()
+        other.execute("SELECT * FROM sqlite_master").fetchall()
+        write()
+        found = [path for path in tmp_path.glob(f"{name}*") if not path.name.endswith(".lock")]
+        assert len(found) == 3
+        for path in found:
+            assert not path.stat().st_mode & 0o007, path.name
