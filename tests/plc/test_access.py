@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from station.errors import LineError
 from station.plc.wire.access import Access, WriteRight, admitted
+from station.plc.wire.admission import MAX_CLIENTS, MAX_NEWCOMERS
 from station.plc.wire.modbus import ModbusClient, ModbusServer
-from station.plc.wire.peers import MAX_PEERS
 
 ALLOW = (ip_network("192.168.7.0/24"), ip_network("10.0.0.5"), ip_network("fd00::/8"))
 
@@ -104,7 +104,7 @@ def test_a_peer_that_is_not_on_the_list_is_turned_away() -> None:
 def test_connections_that_only_sit_there_make_room() -> None:
     async def conversation(server: ModbusServer) -> None:
         idle = await asyncio.to_thread(
-            lambda: [socket.create_connection(("127.0.0.1", server.port)) for _ in range(MAX_PEERS + 8)]
+            lambda: [socket.create_connection(("127.0.0.1", server.port)) for _ in range(MAX_NEWCOMERS + 8)]
         )
         client = ModbusClient("127.0.0.1", server.port)
         await client.connect()
@@ -112,6 +112,24 @@ def test_connections_that_only_sit_there_make_room() -> None:
         client.close()
         for peer in idle:
             peer.close()
+
+    serve(conversation)
+
+
+def test_who_has_just_connected_is_not_the_one_that_was_silent_longest() -> None:
+    async def conversation(server: ModbusServer) -> None:
+        readers = [ModbusClient("127.0.0.1", server.port) for _ in range(MAX_CLIENTS)]
+        for reader in readers:
+            await reader.connect()
+            await reader.read(0, 1)
+        newcomers = [await asyncio.open_connection("127.0.0.1", server.port) for _ in range(9)]
+        for number, (reader_, writer) in enumerate(newcomers):
+            writer.write(bytes([0, number, 0, 0, 0, 6, 1, 3, 0, 0, 0, 1]))
+            assert (await reader_.readexactly(11))[1] == number
+            writer.close()
+            await writer.wait_closed()
+        for reader in readers:
+            reader.close()
 
     serve(conversation)
 

@@ -14,7 +14,6 @@ from station.plc.line import ModbusLine, make_line
 from station.plc.wire.access import Access, Complaints
 from station.plc.wire.framing import refusal
 from station.plc.wire.modbus import ModbusClient, ModbusServer
-from station.plc.wire.peers import MAX_PEERS, Peers
 from station.plc.wire.requests import FUNCTIONS, exception
 from station.settings.model import PlcSettings
 from tests.plc.test_access import serve
@@ -130,33 +129,6 @@ def test_a_peer_that_reads_no_answers_is_held_back_and_ended(
         del reader
 
     serve(conversation)
-
-
-def test_readers_do_not_throw_out_the_writer(caplog: pytest.LogCaptureFixture) -> None:
-    class Fake:
-        def __init__(self, number: int, heard_s: float) -> None:
-            self.number, self.heard_s, self.name, self.role = number, heard_s, "10.0.0.1", None
-            self.ended = False
-
-        def end(self, why: str) -> None:
-            self.ended = True
-            peers.remove(self.number)
-
-        def drop(self) -> None:
-            self.end("")
-
-    async def run() -> None:
-        fakes = [Fake(number, heard_s=number) for number in range(1, MAX_PEERS + 10)]
-        assert [peers.admit(fakes[0]), peers.write_refusal(1)] == [None, None]
-        for fake in fakes[1:]:
-            peers.admit(fake)
-        assert not fakes[0].ended, "the writer is the most silent one and stays"
-        assert sum(fake.ended for fake in fakes) == len(fakes) - MAX_PEERS
-        peers.drop_all()
-
-    peers = Peers(Access())
-    asyncio.run(run())
-    assert not caplog.records
 
 
 def test_only_named_peers_write_and_a_refusal_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:

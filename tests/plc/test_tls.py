@@ -21,9 +21,9 @@ from station.plc.map.registers import Offline
 from station.plc.port import Health
 from station.plc.simulated.line import SimulatedLine
 from station.plc.simulated.windows import RemoteWindows
+from station.plc.wire.admission import MAX_NEWCOMERS
 from station.plc.wire.certificates import make_certificates
 from station.plc.wire.modbus import ModbusClient
-from station.plc.wire.peers import MAX_HANDSHAKES
 from station.plc.wire.role import role_of
 from station.plc.wire.tls import client_context, server_context
 from station.settings.model import PlcSettings, TlsSettings
@@ -157,7 +157,7 @@ def test_handshakes_that_never_end_make_room_and_strangers_get_none(
     def flooded(allow: tuple[IPv4Network, ...]) -> str:
         with running(settings(folder, "server"), allow) as line:
             address = ("127.0.0.1", line.port)
-            idle = [socket.create_connection(address) for _ in range(MAX_HANDSHAKES + 20)]
+            idle = [socket.create_connection(address) for _ in range(MAX_NEWCOMERS + 20)]
             try:
                 return connects(line, client_context(settings(folder, "client")))
             finally:
@@ -165,7 +165,7 @@ def test_handshakes_that_never_end_make_room_and_strangers_get_none(
                     peer.close()
 
     assert flooded(()) == "written"
-    assert "did not finish its TLS handshake while others waited" in caplog.text
+    assert "sent no request while others waited" in caplog.text
     caplog.clear()
     assert flooded((IPv4Network("192.0.2.0/24"),)) == "nothing"
     assert "is not on the list plc.allow" in caplog.text

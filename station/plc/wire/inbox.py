@@ -28,10 +28,10 @@ class Inbox:
         """Use this transport to hold the peer back."""
         self._transport = transport
 
-    def feed(self, data: bytes) -> None:
-        """Take in bytes that have arrived."""
+    def feed(self, data: bytes) -> bool:
+        """Take in bytes that have arrived; return whether a whole request came with them."""
         self._bytes += data
-        self._split()
+        return self._split()
 
     async def next(self) -> bytes | None:
         """Return the next whole request; None if anything else follows."""
@@ -45,13 +45,15 @@ class Inbox:
             self._split()
         return frame
 
-    def _split(self) -> None:
+    def _split(self) -> bool:
+        found: list[bytes] = []
         if self.problem is None:
             found, used, self.problem = frames(self._bytes, MAX_WAITING - len(self._frames))
             self._bytes = self._bytes[used:]
             self._frames.extend(found)
         self._hold(len(self._frames) >= MAX_WAITING or self.problem is not None)
         self._arrived.set()
+        return bool(found)
 
     def _hold(self, paused: bool) -> None:
         if self._transport is not None and paused != self._paused and not self._transport.is_closing():

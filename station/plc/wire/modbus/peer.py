@@ -4,7 +4,6 @@ import asyncio
 import contextvars
 import itertools
 import ssl
-import time
 from contextlib import suppress
 
 from pymodbus.pdu import ModbusPDU
@@ -37,20 +36,21 @@ class ModbusPeer(ServerRequestHandler):
         self._written = asyncio.Event()
         self._written.set()
         self.number = next(self.numbers)
-        self.name, self.heard_s = "unknown", 0.0
+        self.name, self.since_s = "unknown", 0.0
         self.role: str | None = None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Take in a connection, if its address may connect: then comes TLS, then Modbus."""
+        """Take in a connection: first comes TLS, then Modbus."""
         self.name = str((transport.get_extra_info("peername") or ("unknown",))[0])
-        if not isinstance(transport, asyncio.Transport) or not self._peers.may_connect(self):
+        if not isinstance(transport, asyncio.Transport):
             super().connection_made(transport)
             close_at_once(self)
-        elif self._tls is None:
+            return
+        self._peers.admit(self)
+        if self._tls is None:
             self._open(transport)
         else:
             transport.pause_reading()
-            self._peers.begin_handshake(self)
             self.transport = transport
             self._task = asyncio.create_task(self._secure(transport, self._tls))
 
@@ -72,7 +72,6 @@ class ModbusPeer(ServerRequestHandler):
     def _open(self, transport: asyncio.Transport) -> None:
         super().connection_made(transport)
         self._inbox.attach(transport)
-        self._peers.admit(self)
         self._task = asyncio.create_task(self._answer())
 
     def callback_disconnected(self, exc: Exception | None) -> None:
@@ -99,8 +98,8 @@ class ModbusPeer(ServerRequestHandler):
 
     def data_received(self, data: bytes) -> None:
         """Take in bytes; pymodbus' own buffer is cleared by each answer, with what has arrived meanwhile."""
-        self._inbox.feed(data)
-        self.heard_s = time.monotonic()
+        if self._inbox.feed(data):
+            self._peers.heard(self)
 
     def pause_writing(self) -> None:
         """Wait with further answers: the peer does not read those it has."""

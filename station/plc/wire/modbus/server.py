@@ -16,6 +16,8 @@ from pymodbus.simulator import DataType, SimData, SimDevice
 from station import __version__
 from station.errors import LineError
 from station.plc.wire.access import EVERYBODY, Access
+from station.plc.wire.admission import PATIENCE_S, TLS_PATIENCE_S
+from station.plc.wire.modbus.listener import Listener
 from station.plc.wire.modbus.peer import ModbusPeer, asking
 from station.plc.wire.peers import Peers
 from station.plc.wire.requests import CLIENT_WRITES, writes_within
@@ -42,8 +44,9 @@ class ModbusServer:
         """`words`: number of registers; `writable`: what peers may write; `on_write`: called after it."""
         self.host, self.port = host, port
         self._words, self._writable, self._on_write, self._tls = words, writable, on_write, tls
-        self._peers = Peers(access)
+        self._peers = Peers(access, PATIENCE_S if tls is None else TLS_PATIENCE_S)
         self._server: ModbusTcpServer | None = None
+        self._listener: Listener | None = None
 
     async def start(self) -> None:
         """Listen. Raises LineError if the port cannot be used."""
@@ -56,14 +59,15 @@ class ModbusServer:
         try:
             server = ModbusTcpServer(device, identity=identity, address=address)
             server.callback_new_connection = lambda: self._new_peer(server)  # type: ignore[method-assign]
+            listener = Listener(self._peers, server.handle_new_connection)
+            server.call_create = lambda: listener.open(self.host, self.port)
             await server.serve_forever(background=True)
         except (OSError, RuntimeError, ModbusException) as error:
             where = f"{self.host}:{self.port}"
             message = f"Modbus server cannot listen on {where} ({error}); free the port or set plc.port"
             raise LineError(message) from None
-        self._server = server
-        if sockets := getattr(server.transport, "sockets", ()):
-            self.port = sockets[0].getsockname()[1]
+        self._server, self._listener = server, listener
+        self.port = listener.port
 
     async def stop(self) -> None:
         """Set all registers to 0 and close all connections."""
@@ -72,6 +76,9 @@ class ModbusServer:
             self._peers.drop_all()
             await self._server.shutdown()  # type: ignore[no-untyped-call]
             self._server = None
+        if self._listener is not None:
+            await self._listener.wait_closed()
+            self._listener = None
 
     async def read(self, address: int, count: int) -> list[int]:
         """Return the present words of `count` registers."""
