@@ -19,6 +19,7 @@ from rich.progress import track
 from rich.table import Table
 
 from deploy.chaos.judge import Judge, judged
+from deploy.chaos.stalls import Stalls
 from deploy.demo.ports import free_ports
 from station.domain import SEGMENTS
 from station.errors import WeldgateError
@@ -43,6 +44,8 @@ DEADLINE_MS = 300
 """Deadline of the station."""
 SLACK = 1.0
 """Factor for all time-outs: on a busy machine a thread may wait some 100 ms until it runs."""
+STALL_FRACTION = 0.5
+"""Part of the deadline for which threads may wait for a processor until a part counts as disturbed."""
 SETTLED = 1
 """Number of parts after a disturbed one that still count as disturbed."""
 
@@ -59,6 +62,10 @@ class Report:
     """Number of accepted parts that were not judged OK."""
     mismatched: int = 0
     """Number of accepted parts whose result belongs to another part or to none."""
+    undisturbed: int = 0
+    """Number of parts without a fault, of their own or of the part before."""
+    stalled: int = 0
+    """Number of parts during which the machine kept the threads waiting."""
     lost: int = 0
     """Number of undisturbed parts that did not get their verdict."""
     faults: Counter[str] = field(default_factory=Counter)
@@ -70,8 +77,8 @@ class Report:
 
     @property
     def good(self) -> bool:
-        """True if no part was falsely released, mixed up or lost."""
-        return self.false_ok == self.mismatched == self.lost == 0
+        """True if no part was falsely released, mixed up or lost; never of a run in which none counts."""
+        return self.false_ok == self.mismatched == self.lost == 0 and self.undisturbed > 0
 
 
 class Truths:
@@ -152,14 +159,16 @@ def run(mode: str, parts: int, seed: int, controller: Controller = FAST, *, prog
 async def _drive(
     plc: SimulatedLine, truths: Truths, mode: str, *, parts: int, seed: int, progress: bool
 ) -> Report:
-    rng, report, calm = random.Random(seed), Report(mode=mode), 0
+    rng, report, stalls, calm = random.Random(seed), Report(mode=mode), Stalls(), 0
     await plc.connect(10.0)
     try:
         for number in track(range(parts), description=mode, transient=True, disable=not progress):
             faults = frozenset(fault for fault in Fault if rng.random() < FAULT_FRACTION)
             serial = f"P{number:07d}"
             answer = await plc.inspect(serial, WINDOW_S * SLACK, faults=faults)
-            calm = 0 if faults or serial in truths.late else calm + 1
+            stalled = stalls.since_last_s() > STALL_FRACTION * DEADLINE_MS * SLACK / 1000
+            report.stalled += stalled
+            calm = 0 if faults or stalled or serial in truths.late else calm + 1
             _note(report, answer, serial, faults=faults, truths=truths, undisturbed=calm > SETTLED)
     finally:
         await plc.close()
@@ -185,6 +194,7 @@ def _note(
     else:
         report.refused_by[answer.refused_by or ""] += 1
     if undisturbed:
+        report.undisturbed += 1
         report.lost += made is None or made[0] != serial or made[1] is not answer.verdict
         if answer.trigger_to_valid_ms is not None:
             report.valid_ms.append(answer.trigger_to_valid_ms)
@@ -253,6 +263,8 @@ def print_reports(reports: Sequence[Report], console: Console) -> None:
     rows: list[tuple[str, list[str]]] = [
         ("parts", [str(report.parts) for report in reports]),
         ("passed", [str(report.passed) for report in reports]),
+        ("undisturbed", [str(report.undisturbed) for report in reports]),
+        ("with the machine too busy", [str(report.stalled) for report in reports]),
         ("false OK", [str(report.false_ok) for report in reports]),
         ("results matched to the wrong part", [str(report.mismatched) for report in reports]),
         ("lost results", [str(report.lost) for report in reports]),

@@ -73,7 +73,14 @@ def step(state: State, inputs: Inputs, now_s: float, times: Times) -> Step:
 
 
 def ready(state: State) -> bool:
-    """Return whether a trigger would be accepted now."""
+    """Return whether the next rising edge of TRIGGER would be accepted.
+
+    Not while TRIGGER is held: a PLC that drops it and raises it again between two reads shows no edge.
+    """
+    return _free(state) and not state.control & Control.TRIGGER
+
+
+def _free(state: State) -> bool:
     ack_released = not (state.control & Control.RESULT_ACK) or state.stuck
     return (
         state.offline is Offline.NONE
@@ -215,7 +222,7 @@ def _wiped(state: State) -> State:
 
 def _triggered(state: State, inputs: Inputs, now_s: float, was_ready: bool) -> State:
     """Accept a trigger; READY must have been readable before the edge and must still hold."""
-    if not (was_ready and ready(state)):
+    if not (was_ready and _free(state)):
         return replace(state, missed=True)
     if inputs.trigger_id in (0, state.last_id):
         return replace(state, missed=True, error_code=state.error_code or codes.ERROR_BAD_TRIGGER_ID)

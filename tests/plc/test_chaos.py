@@ -1,8 +1,15 @@
 """The proof in small: both sides misbehave, no OK is false, nothing is lost or mixed up."""
 
+import os
+import subprocess
+import sys
+import time
+from threading import Event
+
 import pytest
 
 from deploy.chaos.plc import MODES, main, run
+from deploy.chaos.stalls import Stalls
 from station.plc.block.statements import body
 from station.plc.block.transcribe import Block, compiled
 from station.plc.simulated.line import Fault
@@ -45,3 +52,24 @@ def test_a_report_that_is_not_good_ends_with_one(
     monkeypatch.setattr("deploy.chaos.plc.WINDOW_S", 0.1)
     assert main(["--parts", "4", "--mode", "server"]) == 1
     assert "lost results" in capsys.readouterr().out
+
+
+def test_only_waiting_for_a_processor_counts_as_a_stall() -> None:
+    stalls = Stalls()
+    Event().wait(0.5)
+    assert stalls.since_last_s() < 0.4, "an idle thread waits for no processor"
+    only = {min(os.sched_getaffinity(0))}
+    before = os.sched_getaffinity(0)
+    busy = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+    try:
+        os.sched_setaffinity(busy.pid, only)
+        os.sched_setaffinity(0, only)
+        until = time.process_time() + 0.2
+        waited_s = 0.0
+        while time.process_time() < until or waited_s == 0.0:
+            waited_s += stalls.since_last_s()
+        assert waited_s > 0.02
+    finally:
+        os.sched_setaffinity(0, before)
+        busy.kill()
+        busy.wait()

@@ -10,22 +10,28 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from deploy.chaos.judge import judged
 from station.plc.block.data_types import COPIED
-from station.plc.block.definition import POINTS, REFUSALS, START_AGAIN, VARIABLES
+from station.plc.block.definition import NO_RESULT, POINTS, REFUSALS, START_AGAIN, VARIABLES
 from station.plc.block.dialects import scl, structured_text
 from station.plc.block.statements import body
 from station.plc.block.timers import TimerKind
 from station.plc.block.transcribe import Block
+from station.plc.handshake import step
+from station.plc.handshake_state import Inputs, State, Times
+from station.plc.map import status_window
 from station.plc.map.registers import (
     BY_NAME,
     STATUS_START,
     Control,
     Flags,
+    Offline,
     Status,
     VerdictCode,
     pack,
     pack_window,
 )
+from station.plc.port import Counts, Health
 from tests.plc.test_block import Plc, window
 
 LOOPS = ((0, 15), (0, 20), (1, 40))
@@ -73,6 +79,42 @@ class Station:
             Status.READY | Status.RESULT_VALID | Status.EXPOSURE_DONE | (Status.OK if good else Status.NOK)
         )
         return int(shown) | kept
+
+
+def test_after_a_refused_trigger_the_next_part_waits_until_the_station_has_seen_it_drop() -> None:
+    """The station reads each seventh cycle, as in client mode: a short low of TRIGGER would be no edge."""
+    block, state, window, now_s, answered = Block(), State(), [0] * len(READY), 100.0, []
+    v, health = block.v, Health(ready=True, offline=Offline.NONE, failure=False, config_crc=77)
+    v.Crc, v.WindowTime = 77, 1.0
+    for cycle in range(1500):
+        now_s += 0.004
+        v.Window, v.Fresh = list(window), True
+        v.Start = v.Ready or (v.Busy and v.Start)
+        block.cycle(now_s)
+        if v.PartDone:
+            answered.append(v.Result.REFUSAL)
+        if cycle % 7:
+            continue
+        wrong_id = len(answered) in (0, 1, 4)
+        inputs = Inputs(
+            control=Control(v.Command[0]),
+            plc_heartbeat=v.Command[1],
+            trigger_id=0 if wrong_id else v.Command[2],
+            serial="",
+            serial_words=tuple(v.Command[5:21]),
+            command=0,
+            health=health,
+            health_age_s=0.0,
+            result=None if state.trigger is None else judged(state.trigger, VerdictCode.OK),
+        )
+        outcome = step(state, inputs, now_s, Times())
+        state = outcome.state
+        words = status_window.values(state, health, now_s, Counts())
+        window = pack_window(STATUS_START, len(READY), words)
+    assert answered[:4] == [NO_RESULT, NO_RESULT, 0, 0]
+    assert answered[4] == NO_RESULT
+    assert len(answered) > 8
+    assert set(answered[5:]) == {0}
 
 
 def outputs(block: Block) -> dict[str, object]:

@@ -480,6 +480,7 @@ class AnyInputs(RuleBasedStateMachine):
             assert values["RESULT_TRIGGER_ID"] == self.plc.state.last_id
         if Status.READY in bits:
             assert Status.BUSY not in bits
+            assert Control.TRIGGER not in self.plc.state.control, "a held TRIGGER has no edge"
 
     @invariant()
     def there_is_a_way_out(self) -> None:

@@ -4,6 +4,7 @@ import random
 import socket
 import struct
 import threading
+from contextlib import ExitStack
 
 import pytest
 from hypothesis import given
@@ -117,6 +118,30 @@ def test_a_hundred_thousand_frames_of_noise_change_nothing(line: ModbusLine) -> 
         before = status_window(plc)[1]
         assert line.next_request(0.15) is None
         assert status_window(plc)[1] != before, "the heartbeat goes on"
+
+
+def test_a_plc_that_connects_in_the_midst_of_a_flood_is_served_each_time(line: ModbusLine) -> None:
+    stop = threading.Event()
+
+    def flood(seed: int) -> None:
+        rng = random.Random(seed)
+        while not stop.is_set():
+            with ExitStack() as volley:
+                for _ in range(50):
+                    peer = socket.create_connection(("127.0.0.1", line.port), timeout=20)
+                    volley.enter_context(peer).sendall(noise(rng))
+
+    shouting = [threading.Thread(target=flood, args=(seed,)) for seed in range(4)]
+    for thread in shouting:
+        thread.start()
+    try:
+        for _ in range(300):
+            with socket.create_connection(("127.0.0.1", line.port), timeout=20) as plc:
+                assert status_window(plc)[5:7] == [0, 0xFFFF]
+    finally:
+        stop.set()
+        for thread in shouting:
+            thread.join()
 
 
 def test_a_peer_that_speaks_no_modbus_is_told_in_the_log(
