@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 LOTS_FOLDER := build/lots
+OUTSIDE := tests/plc/npm
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
 .PHONY: help setup demo test lint bench chaos-plc chaos-covers chaos-records chaos-panel soak-panel
@@ -91,9 +92,10 @@ $(VENV)/.demo: $(VENV)/.system pyproject.toml constraints.txt
 	$(PIP) -e '.[synth]'
 	touch $@
 
-$(VENV)/.dev: $(VENV)/.demo pyproject.toml constraints.txt deploy/system.sh
+$(VENV)/.dev: $(VENV)/.demo pyproject.toml constraints.txt deploy/system.sh $(OUTSIDE)/package-lock.json
 	deploy/system.sh test
 	$(PIP) -e '.[synth,train,tls,pdf,docs,dev]'
+	PATH="$(CURDIR)/$(BIN):$$PATH" npm ci --prefix $(OUTSIDE) --omit=optional --ignore-scripts --no-audit --no-fund
 	touch $@
 
 $(VENV)/.docs: $(VENV)/.system pyproject.toml constraints.txt
