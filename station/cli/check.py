@@ -12,6 +12,7 @@ from station.domain import TRAINED_UM_PER_PX
 from station.errors import WeldgateError
 from station.inspection.loading import prepare
 from station.plc.line import make_line
+from station.plc.wire.access import open_to_all
 from station.settings.file import load
 from station.settings.model import Settings, for_recipe
 from station.settings.view import check_view
@@ -33,6 +34,9 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
             yield name, str(error)
         else:
             yield name, None
+    plc = settings.plc
+    if plc.mode == "server" and (said := open_to_all(plc.host, plc.allow)):
+        yield said, None
 
 
 def _scale(settings: Settings) -> str:

@@ -4,12 +4,14 @@ import asyncio
 import socket
 import struct
 from ipaddress import ip_network
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from deploy.demo.ports import free_ports
+from station.cli.check import check
 from station.plc.line import ModbusLine, make_line
 from station.plc.wire.access import Access, Complaints
 from station.plc.wire.framing import refusal
@@ -206,3 +208,25 @@ def test_an_empty_list_of_peers_is_said(
     line.start()
     line.stop()
     assert ("plc.allow is empty" in caplog.text) is said
+
+
+@pytest.mark.parametrize(
+    ("section", "said"),
+    [
+        ('host = "0.0.0.0"', True),
+        ('host = "0.0.0.0"\nallow = ["10.0.0.0/24"]', False),
+        ('host = "127.0.0.1"', False),
+        ('host = "::1"', False),
+        ('mode = "client"\nhost = "192.0.2.1"', False),
+    ],
+)
+def test_check_names_an_empty_list_of_peers(
+    section: str, said: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for probe in ("_model", "_archive", "_camera", "_plc"):
+        monkeypatch.setattr(f"station.cli.check.{probe}", lambda _: None)
+    path = tmp_path / "station.toml"
+    path.write_text(f'[camera]\nkind = "replay"\nfolder = "images"\n[plc]\n{section}\n')
+    found = dict(check(path))
+    assert found["settings"] is None
+    assert any("plc.allow is empty" in name for name in found) is said

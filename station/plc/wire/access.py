@@ -8,6 +8,7 @@ import asyncio
 import logging
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from ipaddress import IPv4Network, IPv6Network, ip_address
 
@@ -45,6 +46,16 @@ def admitted(address: str, networks: Sequence[Network]) -> bool:
     peer = ip_address(address.split("%")[0])
     mapped = getattr(peer, "ipv4_mapped", None)
     return not networks or any((mapped or peer) in network for network in networks)
+
+
+def open_to_all(host: str, allow: Sequence[Network]) -> str | None:
+    """Return a sentence if a server at an address lets every machine connect that reaches it, else None."""
+    local = host == "localhost"
+    with suppress(ValueError):
+        local = ip_address(host).is_loopback
+    if allow or local:
+        return None
+    return f"plc.allow is empty: every machine that reaches {host} may connect; name the PLC under plc.allow"
 
 
 class WriteRight:

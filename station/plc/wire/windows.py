@@ -3,8 +3,6 @@
 import logging
 import time
 from collections.abc import Callable
-from contextlib import suppress
-from ipaddress import ip_address
 from typing import Protocol
 
 from station.errors import LineError
@@ -17,7 +15,7 @@ from station.plc.map.registers import (
     Status,
     reordered,
 )
-from station.plc.wire.access import Access
+from station.plc.wire.access import Access, open_to_all
 from station.plc.wire.modbus import ModbusClient, ModbusServer
 from station.plc.wire.tls import Tls, client_context, server_context
 from station.settings.model import PlcSettings
@@ -78,7 +76,7 @@ class ServerWire:
         tls: Tls,
     ) -> None:
         self._low_word_first = low_word_first
-        self._open_to_all = not access.allow and not _loopback(host)
+        self._open_to_all = open_to_all(host, access.allow)
         self._wake: Callable[[], None] = lambda: None
         self._server = ModbusServer(
             host,
@@ -100,10 +98,7 @@ class ServerWire:
         self._wake = wake
         await self._server.start()
         if self._open_to_all:
-            log.warning(
-                "plc.allow is empty: every machine that reaches %s may connect; name the PLC under plc.allow",
-                self._server.host,
-            )
+            log.warning(self._open_to_all)
 
     async def close(self) -> None:
         """Set all registers to 0 and stop."""
@@ -228,12 +223,6 @@ class ClientWire:
 
     async def _write_record(self, words: list[int]) -> None:
         await self._client.write(self._status_base + 1, words[1:])
-
-
-def _loopback(host: str) -> bool:
-    with suppress(ValueError):
-        return ip_address(host).is_loopback
-    return host == "localhost"
 
 
 def _without_age(words: list[int]) -> list[int]:
