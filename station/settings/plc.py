@@ -24,6 +24,10 @@ without optimised access, of which word 0 is register 0.
 """
 
 
+S7_PORT = 102
+"""TCP port of S7 PLCs."""
+
+
 class TlsSettings(Section):
     """Certificates for Modbus/TCP Security; `weldgate certificates` makes some for tests."""
 
@@ -35,6 +39,16 @@ class TlsSettings(Section):
     """Revocation list of the authority; None: no certificate counts as revoked."""
     writer_role: str | None = Field(default=None, min_length=1)
     """Role that a client's certificate must have to write (server); None: any, or none."""
+
+
+class S7Settings(Section):
+    """Access to the memory of a Siemens PLC in its own protocol, S7 over ISO on TCP, instead of Modbus."""
+
+    db: int = Field(ge=1, le=65535)
+    """Number of the data block that holds the windows; not optimised."""
+    rack: int = Field(default=0, ge=0, le=7)
+    slot: int = Field(default=1, ge=0, le=31)
+    """Slot of the CPU: 1 for S7-1200 and S7-1500, 2 for S7-300, as configured for S7-400."""
 
 
 class PlcSettings(Section):
@@ -67,6 +81,8 @@ class PlcSettings(Section):
     writer_idle_ms: int = Field(default=2_000, ge=100, le=600_000)
     """Time without a write after which another peer can take over the right to write (server)."""
     tls: TlsSettings | None = None
+    s7: S7Settings | None = None
+    """Speak S7 instead of Modbus (client); addresses then count the words of the data block, from 0."""
     deadline_ms: int = Field(default=2000, ge=100, le=60_000)
     """Time from trigger to result; a later result is ERROR."""
     result_ttl_ms: int = Field(default=10_000, ge=100, le=600_000)
@@ -85,6 +101,18 @@ class PlcSettings(Section):
         if values.get("mode") != "client":
             raise ValueError('preset: only for mode = "client"; a PLC that is the client needs none')
         return PRESETS[preset] | values
+
+    @model_validator(mode="before")
+    @classmethod
+    def _s7_fits(cls, values: Any) -> Any:
+        if not isinstance(values, dict) or values.get("s7") is None:
+            return values
+        if values.get("mode") != "client":
+            raise ValueError('s7: only for mode = "client"; the station is no S7 PLC')
+        beside = [name for name in ("tls", "preset", "command_function", "unit") if name in values]
+        if beside:
+            raise ValueError(f"{beside[0]}: only for Modbus; leave it out beside s7")
+        return {"port": S7_PORT} | values
 
     @model_validator(mode="after")
     def _windows_apart(self) -> "PlcSettings":

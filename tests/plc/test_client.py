@@ -3,6 +3,7 @@
 import asyncio
 import random
 import socket
+import sys
 import threading
 import time
 from contextlib import suppress
@@ -11,14 +12,15 @@ import pytest
 
 from deploy.chaos.judge import WELL, Judge, judged
 from deploy.demo.ports import free_ports
+from station.errors import LineError, SettingsError
 from station.plc.line import make_line
 from station.plc.map.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Offline, VerdictCode
 from station.plc.port import Result, Trigger
 from station.plc.simulated.line import Answer, SimulatedLine
-from station.plc.simulated.windows import OwnWindows
-from station.plc.wire.modbus import ModbusServer
-from station.plc.wire.windows import RESULT_BITS, ClientWire, make_wire
+from station.plc.wire.windows import RESULT_BITS, make_wire
 from station.settings.model import PlcSettings
+from station.settings.plc import S7Settings
+from tests.plc.spoken import ModbusPeer, Peer, S7Peer
 
 
 def ok(trigger: Trigger) -> Result:
@@ -28,9 +30,9 @@ def ok(trigger: Trigger) -> Result:
 class Proxy:
     """Between station and PLC: forwards, and at the n-th write misbehaves once, as set."""
 
-    def __init__(self, plc_port: int, at_write: int, forward: bool) -> None:
+    def __init__(self, peer: Peer, plc_port: int, at_write: int, forward: bool) -> None:
         """`forward`: the PLC gets that write but the station no answer; otherwise neither gets anything."""
-        self._plc_port, self._at, self._forward = plc_port, at_write, forward
+        self._peer, self._plc_port, self._at, self._forward = peer, plc_port, at_write, forward
         self._writes = 0
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.port = self._listener.getsockname()[1]
@@ -55,9 +57,9 @@ class Proxy:
             with plc:
                 station.settimeout(2)
                 while request := station.recv(4096):
-                    if request[7] == 16:
-                        self._writes += 1
-                    cut = self._writes == self._at and request[7] == 16
+                    writes = self._peer.writes(request)
+                    self._writes += writes
+                    cut = self._writes == self._at and writes
                     if cut and not self._forward:
                         return
                     plc.sendall(request)
@@ -72,16 +74,21 @@ def ports() -> int:
     return free_ports(1)[0]
 
 
+@pytest.fixture(params=[ModbusPeer, S7Peer], ids=["modbus", "s7"])
+def peer(request: pytest.FixtureRequest) -> Peer:
+    return request.param()  # type: ignore[no-any-return]
+
+
 @pytest.mark.parametrize("forward", [True, False])
 @pytest.mark.parametrize("at_write", [3, 5, 6, 7, 8, 9, 10, 12])
 def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(
-    at_write: int, forward: bool, ports: int, monkeypatch: pytest.MonkeyPatch
+    at_write: int, forward: bool, peer: Peer, ports: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """NOK and OK in turns: wherever the link is cut, OK is shown only for its own part; later parts pass."""
     monkeypatch.setattr("station.plc.wire.windows.RETRY_S", 0.05)
-    windows = OwnWindows("127.0.0.1", ports)
-    proxy = Proxy(ports, at_write, forward)
-    settings = PlcSettings(mode="client", port=proxy.port, poll_ms=5, timeout_ms=200, deadline_ms=1500)
+    windows = peer.windows(ports)
+    proxy = Proxy(peer, ports, at_write, forward)
+    settings = peer.settings(proxy.port, poll_ms=5, timeout_ms=200, deadline_ms=1500)
     line = make_line(settings)
 
     def decide(trigger: Trigger) -> Result:
@@ -124,9 +131,11 @@ class LateStart:
             self._line.check_in(health)  # type: ignore[attr-defined]
 
 
-def test_a_mute_plc_is_told_and_nothing_blocks(ports: int, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_mute_plc_is_told_and_nothing_blocks(
+    peer: Peer, ports: int, caplog: pytest.LogCaptureFixture
+) -> None:
     with socket.create_server(("127.0.0.1", ports)):
-        line = make_line(PlcSettings(mode="client", port=ports, timeout_ms=2000, plc_heartbeat_ms=300))
+        line = make_line(peer.settings(ports, timeout_ms=2000, plc_heartbeat_ms=300))
         line.start()
         try:
             until = time.monotonic() + 100
@@ -138,16 +147,16 @@ def test_a_mute_plc_is_told_and_nothing_blocks(ports: int, caplog: pytest.LogCap
             assert line.state().offline is Offline.PLC_SILENT
         finally:
             line.stop()
-    assert "No response" in caplog.text
+    assert peer.mute in caplog.text
 
 
-def test_a_plc_that_is_not_there_is_waited_for(ports: int) -> None:
-    line = make_line(PlcSettings(mode="client", port=ports, poll_ms=5, timeout_ms=200))
+def test_a_plc_that_is_not_there_is_waited_for(peer: Peer, ports: int) -> None:
+    line = make_line(peer.settings(ports, poll_ms=5, timeout_ms=200))
     line.start()
 
     async def conversation() -> Answer:
         await asyncio.sleep(0.7)
-        plc = SimulatedLine(OwnWindows("127.0.0.1", ports), accept_simulated=False)
+        plc = SimulatedLine(peer.windows(ports), accept_simulated=False)
         await plc.connect(50)
         try:
             return await plc.inspect("LATE", 20.0)
@@ -161,21 +170,20 @@ def test_a_plc_that_is_not_there_is_waited_for(ports: int) -> None:
         line.stop()
 
 
-def test_a_wrong_base_address_is_said_with_its_register(ports: int, caplog: pytest.LogCaptureFixture) -> None:
-    line = make_line(
-        PlcSettings(
-            mode="client", port=ports, poll_ms=5, timeout_ms=200, status_base=4000, plc_heartbeat_ms=300
-        )
-    )
+def test_a_wrong_base_address_is_said_with_its_register(
+    peer: Peer, ports: int, caplog: pytest.LogCaptureFixture
+) -> None:
+    settings = peer.settings(ports, poll_ms=5, timeout_ms=200, status_base=4000, plc_heartbeat_ms=300)
+    line = make_line(settings)
 
     def said() -> bool:
-        return "4000 refused" in caplog.text
+        return peer.refused in caplog.text
 
     def silent() -> bool:
         return line.state().offline is Offline.PLC_SILENT
 
     async def conversation() -> int:
-        windows = OwnWindows("127.0.0.1", ports)
+        windows = peer.windows(ports)
         await windows.connect()
         line.start()
         until = time.monotonic() + 100
@@ -196,43 +204,23 @@ def test_windows_that_overlap_are_refused() -> None:
         PlcSettings(mode="client", command_base=90, status_base=100)
 
 
-def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(ports: int) -> None:
+def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
+    peer: Peer, ports: int
+) -> None:
     """No bit that the next status lacks may outlive a result: a stale READY would be taken for a new one."""
-    rng, words = random.Random(7), STATUS_START + STATUS_WORDS
+    rng = random.Random(7)
 
     async def publish_many() -> None:
-        plc = ModbusServer(
-            "127.0.0.1",
-            ports,
-            words=words,
-            writable=range(STATUS_START, words),
-            on_write=lambda: looks.append(asyncio.create_task(look())),
-        )
-        looks: list[asyncio.Task[None]] = []
-        seen: list[int] = []
-
-        async def look() -> None:
-            seen.extend(await plc.read(STATUS_START, 1))
-
-        await plc.start()
-        wire = ClientWire(
-            "127.0.0.1",
-            ports,
-            unit=1,
-            bases=(0, STATUS_START),
-            command_function=3,
-            poll_s=0.005,
-            timeout_s=1.0,
-            low_word_first=False,
-            tls=None,
-        )
+        seen = peer.status_seen
+        plc = peer.windows(ports)
+        await plc.connect()
+        wire = make_wire(peer.settings(ports, poll_ms=5, timeout_ms=1000))
         await wire.read_command()
         before = [0] * STATUS_WORDS
         for head in range(1, 200):
             after = [rng.getrandbits(16), 0, head, *(rng.getrandbits(16) for _ in range(STATUS_WORDS - 3))]
             seen.clear()
             await wire.publish(after)
-            await asyncio.gather(*looks)
             assert await plc.read(STATUS_START, STATUS_WORDS) == after
             for status in seen:
                 assert status in (before[0], after[0]) or (
@@ -241,9 +229,73 @@ def test_between_two_records_the_plc_reads_only_bits_that_hold_before_and_after(
             assert before[0] & RESULT_BITS == 0 or (before[0] & after[0] & ~RESULT_BITS & 0xFFFF) in seen
             before = after
         await wire.close()
-        await plc.stop()
+        assert await plc.read(STATUS_START, STATUS_WORDS) == [0] * STATUS_WORDS
+        await plc.close()
 
     asyncio.run(publish_many())
+
+
+@pytest.mark.parametrize("low_word_first", [False, True])
+def test_parts_pass_on_their_own_verdict_alone(peer: Peer, ports: int, low_word_first: bool) -> None:
+    line = make_line(peer.settings(ports, poll_ms=5, low_word_first=low_word_first))
+    windows = peer.windows(ports, low_word_first=low_word_first)
+
+    def decide(trigger: Trigger) -> Result:
+        return judged(trigger, VerdictCode.NOK if trigger.trigger_id % 3 == 0 else VerdictCode.OK)
+
+    async def conversation() -> list[Answer]:
+        plc = SimulatedLine(windows, accept_simulated=False)
+        await plc.connect(50)
+        line.start()
+        try:
+            return [await plc.inspect(f"P-{number}", 30.0) for number in range(1, 25)]
+        finally:
+            await plc.close()
+
+    try:
+        with Judge(LateStart(line), decide):  # type: ignore[arg-type]
+            answers = asyncio.run(conversation())
+    finally:
+        line.stop()
+    assert [answer.accepted for answer in answers] == [answer.trigger_id % 3 != 0 for answer in answers]
+    assert [answer.verdict for answer in answers].count(VerdictCode.NOK) == 8
+    assert all(answer.handshake_complete for answer in answers)
+
+
+@pytest.mark.parametrize("name", ["tls", "preset", "command_function", "unit"])
+def test_what_is_of_modbus_alone_is_refused_beside_s7(name: str) -> None:
+    value = {"tls": {}, "preset": "tia", "command_function": 3, "unit": 1}[name]
+    with pytest.raises(ValueError, match=f"{name}: only for Modbus"):
+        PlcSettings.model_validate({"mode": "client", "s7": {"db": 10}, name: value})
+
+
+def test_s7_is_off_by_default_and_for_clients_alone() -> None:
+    assert PlcSettings().s7 is None
+    assert PlcSettings.model_validate({"mode": "client", "s7": {"db": 10}}).port == 102
+    with pytest.raises(ValueError, match="only for mode"):
+        PlcSettings.model_validate({"s7": {"db": 10}})
+    for wrong in ({"db": 0}, {}, {"db": 10, "rack": 8}, {"db": 10, "slot": 32}):
+        with pytest.raises(ValueError, match=r"s7\."):
+            PlcSettings.model_validate({"mode": "client", "s7": wrong})
+
+
+def test_the_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "snap7.async_client", None)
+    with pytest.raises(SettingsError, match=r"pip install 'weldgate\[s7\]'"):
+        make_line(PlcSettings(mode="client", s7=S7Settings(db=10)))
+
+
+def test_a_plc_with_another_data_block_is_told_by_name(ports: int, caplog: pytest.LogCaptureFixture) -> None:
+    async def run() -> None:
+        plc = S7Peer().windows(ports)
+        await plc.connect()
+        wire = make_wire(PlcSettings(mode="client", port=ports, s7=S7Settings(db=11)))
+        with pytest.raises(LineError, match="of DB11"):
+            await wire.read_command()
+        await wire.close()
+        await plc.close()
+
+    asyncio.run(run())
 
 
 @pytest.mark.parametrize(

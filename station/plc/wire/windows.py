@@ -17,6 +17,7 @@ from station.plc.map.registers import (
 )
 from station.plc.wire.access import Access, open_to_all
 from station.plc.wire.modbus import ModbusClient, ModbusServer
+from station.plc.wire.s7 import S7Client
 from station.plc.wire.tls import Tls, client_context, server_context
 from station.settings.model import PlcSettings
 
@@ -59,6 +60,22 @@ class Wire(Protocol):
 
         Raises LineError; then it is unknown what the PLC has.
         """
+
+
+class Words(Protocol):
+    """Words in the memory of a PLC. Use from one loop only."""
+
+    async def connect(self) -> None:
+        """Open a new connection. Raises LineError."""
+
+    async def read(self, address: int, count: int, function: int = 3) -> list[int]:
+        """Return words, taken in one read. Raises LineError."""
+
+    async def write(self, address: int, words: list[int]) -> None:
+        """Write words at once. Raises LineError; then it is unknown whether the PLC has them."""
+
+    def close(self) -> None:
+        """Close the connection."""
 
 
 class ServerWire:
@@ -124,22 +141,19 @@ class ClientWire:
 
     def __init__(
         self,
-        host: str,
-        port: int,
+        client: Words,
         *,
-        unit: int,
+        port: int,
         bases: tuple[int, int],
         command_function: int,
         poll_s: float,
-        timeout_s: float,
         low_word_first: bool,
-        tls: Tls,
     ) -> None:
         """`bases`: addresses of the command window and of the status window in the PLC.
 
-        `command_function`: function that reads the command window, 3 or 4.
+        `command_function`: function of Modbus that reads the command window, 3 or 4.
         """
-        self._client = ModbusClient(host, port, unit=unit, timeout_s=timeout_s, tls=tls)
+        self._client = client
         self.port, self.tick_s = port, poll_s
         self._command_base, self._status_base = bases
         self._command_function = command_function
@@ -245,13 +259,18 @@ def make_wire(settings: PlcSettings) -> Wire:
             tls=None if settings.tls is None else server_context(settings.tls),
         )
     return ClientWire(
-        settings.host,
-        settings.port,
-        unit=settings.unit,
+        _client(settings),
+        port=settings.port,
         bases=(settings.command_base, settings.status_base),
         command_function=settings.command_function,
         poll_s=settings.poll_ms / 1000,
-        timeout_s=settings.timeout_ms / 1000,
         low_word_first=settings.low_word_first,
-        tls=None if settings.tls is None else client_context(settings.tls),
     )
+
+
+def _client(settings: PlcSettings) -> Words:
+    timeout_s = settings.timeout_ms / 1000
+    if settings.s7 is not None:
+        return S7Client(settings.host, settings.port, settings.s7, timeout_s=timeout_s)
+    tls = None if settings.tls is None else client_context(settings.tls)
+    return ModbusClient(settings.host, settings.port, unit=settings.unit, timeout_s=timeout_s, tls=tls)
