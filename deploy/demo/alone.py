@@ -41,7 +41,7 @@ def hints(host: str, port: int) -> str:
         f"station on {host}, port {port}: the PLC connects to it (Modbus TCP, any unit id)\n"
         "  command window: registers 0 to 22, status window: from 100; the first hour: deploy/plc/README.md\n"
         "  block: set AcceptSimulated := TRUE, or each part is refused with 12 (emulated camera)\n"
-        "  block: copy CONFIG_CRC (register 112) to Crc, or each part is refused with 9\n"
+        "  block: copy CONFIG_CRC (register 112, Info.CONFIG_CRC) to Crc, or each part is refused with 9\n"
         "a new part lies in front of the camera at each trigger; Ctrl-C ends"
     )
 
@@ -54,7 +54,7 @@ async def stand_alone(stage: Stage, host: str, port: int, console: Console) -> N
     client = ModbusClient("127.0.0.1" if host in ("0.0.0.0", "::") else host, port)
     try:
         await _connect(client, stage)
-        console.print(hints(host, port), highlight=False)
+        console.print(hints(host, port), highlight=False, soft_wrap=True)
         await _watch(client, stage, part, parts=parts, console=console)
     finally:
         client.close()

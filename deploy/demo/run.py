@@ -19,6 +19,7 @@ from pathlib import Path
 from rich.console import Console
 
 from deploy.demo.alone import stand_alone
+from deploy.demo.follow import client_hints, follow_bus
 from deploy.demo.ports import free_ports
 from deploy.demo.stage import Stage, has_display, last_line, staged
 from deploy.demo.station import running, shipped_parts, station_toml
@@ -28,6 +29,7 @@ from station.files.destination import find_destination, output_path, standard_ou
 from station.files.installation import room_command
 from station.numbers import number_option, port_option, whole_option
 from station.plc.simulated.line import SimulatedLine
+from station.settings.plc import PRESETS
 from synth.errors import SynthError
 
 RENDER_PATIENCE_S = 120.0
@@ -81,18 +83,26 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--host",
         default="127.0.0.1",
-        help="with --station: own address; 0.0.0.0 for all networks (default: %(default)s)",
+        help="with --station: own address; 0.0.0.0 for all networks; with --preset: address of the PLC "
+        "(default: %(default)s)",
     )
     parser.add_argument(
         "--port",
         type=port_option,
         default=1502,
         metavar="PORT",
-        help="with --station: TCP port for the PLC (default: %(default)s)",
+        help="with --station: TCP port for the PLC; with --preset: that of the PLC (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--preset",
+        choices=list(PRESETS),
+        help="with --station: the PLC is the Modbus server; connect to it, with the addresses of this tool",
     )
     arguments = parser.parse_args(argv)
     if arguments.parts < 1:
         parser.error("--parts must be at least 1")
+    if arguments.preset is not None and not arguments.station:
+        parser.error("--preset: only with --station")
     try:
         if arguments.json is not None:
             find_destination(arguments.json).check()
@@ -151,10 +161,15 @@ def _run_alone(arguments: argparse.Namespace, console: Console) -> int:
         arguments.port,
         host=arguments.host,
         deadline_ms=ALONE_DEADLINE_MS,
+        preset=arguments.preset,
     )
     try:
         with staged(settings, not arguments.headless and has_display(), console) as stage:
-            asyncio.run(stand_alone(stage, arguments.host, arguments.port, console))
+            if arguments.preset is None:
+                asyncio.run(stand_alone(stage, arguments.host, arguments.port, console))
+            else:
+                console.print(client_hints(arguments.host, arguments.port), highlight=False, soft_wrap=True)
+                follow_bus(stage, arguments.records.resolve(), console)
     except KeyboardInterrupt:
         console.print("the station has ended")
     return 0

@@ -24,11 +24,20 @@ def shipped_parts() -> list[DemoPart]:
     ]
 
 
-def station_toml(records: Path, port: int, *, host: str = "127.0.0.1", deadline_ms: int = 2000) -> str:
+def station_toml(
+    records: Path,
+    port: int,
+    *,
+    host: str = "127.0.0.1",
+    deadline_ms: int = 2000,
+    preset: str | None = None,
+) -> str:
     """Return the settings of a station with the emulated camera and the shipped networks.
 
-    `host` and `port` are the address for the PLC. A busy machine needs a longer deadline.
+    `host` and `port` are the address for the PLC, or, with a `preset`, that of a PLC which is the server. A
+    busy machine needs a longer deadline.
     """
+    client = "" if preset is None else f'mode = "client"\npreset = "{preset}"\n'
     good = next(part.path for part in shipped_parts() if part.truth == "OK")
     return f"""
 [camera]
@@ -45,7 +54,7 @@ self_test_verdict = "OK"
 [plc]
 host = {json.dumps(host)}
 port = {port}
-deadline_ms = {deadline_ms}
+{client}deadline_ms = {deadline_ms}
 [archive]
 folder = {json.dumps(str(records))}
 """
