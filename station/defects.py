@@ -45,6 +45,7 @@ class Reason(StrEnum):
     INTERNAL = "internal error", 16
     SEGMENT_NOT_SEEN = "segment not seen", 17
     UNLIKE_TRAINING = "unlike the training images", 18
+    NOT_OF_TRIGGER = "frame not of this trigger", 19
 
 
 class Width(Enum):

@@ -68,6 +68,8 @@ class Frame:
     source: str
     """Serial number of the camera, or file name."""
     origin: Origin
+    unrequested: int = field(default=0, kw_only=True)
+    """Number of frames that were dropped before it, as no trigger had asked for them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ WeldgateError
 ├── CameraError
 │   ├── CameraLost     the camera is absent or stopped answering
 │   ├── FrameTimeout   no frame came in time
-│   └── FrameDamaged   a frame came incomplete or in the wrong size
+│   ├── FrameDamaged   a frame came incomplete or in the wrong size
+│   └── FrameUnrequested  a frame is not proven to be that of the trigger
 ├── LocateError        no weld ring, or not completely in view
 ├── RecordError        a record cannot be written or read
 ├── LoginError         the login does not allow the action
@@ -50,6 +51,10 @@ class FrameDamaged(CameraError):
         """`wrong_size`: the frame has another size than set."""
         super().__init__(message)
         self.wrong_size = wrong_size
+
+
+class FrameUnrequested(CameraError):
+    """A frame was exposed before the trigger, repeats another or is out of order: perhaps of another part."""
 
 
 class LocateError(WeldgateError):

@@ -37,7 +37,7 @@ class StubCamera:
     def alive(self) -> bool:
         return True
 
-    def grab(self) -> Frame:
+    def grab(self, trigger_s: float) -> Frame:
         raise CameraLost("no frames here")
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:

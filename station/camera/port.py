@@ -11,10 +11,11 @@ class Camera(Protocol):
     def open(self) -> None:
         """Connect and configure, also after a loss. Raises CameraLost."""
 
-    def grab(self) -> Frame:
-        """Return one frame of the part in view.
+    def grab(self, trigger_s: float) -> Frame:
+        """Return one frame of the part in view, whose exposure began after `trigger_s` (monotonic time).
 
-        Raises FrameTimeout, FrameDamaged (the camera stays open) or CameraLost (open it again).
+        Raises FrameTimeout, FrameDamaged, FrameUnrequested (the camera stays open) or CameraLost (open it
+        again).
         """
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:

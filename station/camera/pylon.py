@@ -1,16 +1,26 @@
 """Basler cameras, real or emulated; the only file that imports pypylon."""
 
+import time
 from datetime import UTC, datetime
 
 import numpy as np
 from pypylon import genicam, pylon
 
-from station.domain import Frame
-from station.errors import CameraLost, FrameDamaged, FrameTimeout
+from station.camera.frame_order import FrameOrder, Latch, is_before, is_impossible
+from station.domain import Frame, Origin
+from station.errors import CameraLost, FrameDamaged, FrameTimeout, FrameUnrequested
 from station.settings.camera import PylonSettings
 
 SOURCES = {"software": "Software", "line1": "Line1"}
 """GenICam name of each trigger source."""
+CLOCKS = (
+    ("TimestampLatch", "TimestampLatchValue", None),
+    ("GevTimestampControlLatch", "GevTimestampValue", "GevTimestampTickFrequency"),
+)
+"""Nodes that latch the camera's clock, hold its value, and its rate in Hz (None: one tick per ns)."""
+LATCH_S = 0.005
+"""Time within which a reading of the camera's clock is good enough."""
+LATCH_TRIALS = 3
 
 
 class PylonCamera:
@@ -19,6 +29,7 @@ class PylonCamera:
     def __init__(self, settings: PylonSettings) -> None:
         self._settings = settings
         self._camera: pylon.InstantCamera | None = None
+        self._order = FrameOrder()
 
     def open(self) -> None:
         """Connect and configure, also after a loss. Raises CameraLost."""
@@ -32,34 +43,51 @@ class PylonCamera:
             camera = pylon.InstantCamera(pylon.TlFactory.GetInstance().CreateFirstDevice(info))
             camera.Open()
             _configure(camera, settings)
+            self._order = FrameOrder()
             camera.StartGrabbing(pylon.GrabStrategy_OneByOne)
+            clock = latched(camera)
         except genicam.GenericException as error:
             if camera is not None:
                 _release(camera)
             name = f"camera {settings.serial} ({settings.device_class})"
             raise CameraLost(f"{name}: {_first_line(error)}; check power, cable and camera.serial") from None
         self._camera = camera
+        if clock is None and settings.trigger != "software" and settings.origin is Origin.CAMERA:
+            self.close()
+            raise CameraLost(
+                f"camera {settings.serial}: its clock cannot be read, so that a frame of an earlier edge "
+                'would not be noticed; set camera.trigger = "software"'
+            )
 
-    def grab(self) -> Frame:
-        """Return one frame, by software trigger or the next hardware edge; earlier frames are dropped.
+    def grab(self, trigger_s: float) -> Frame:
+        """Return one frame, by software trigger or the next hardware edge, exposed after `trigger_s`.
 
-        Raises CameraLost, FrameTimeout, FrameDamaged.
+        `trigger_s`: monotonic time. Frames of earlier exposures are dropped and counted: the camera's own
+        clock tells, or, if it has none, the camera is started again first.
+        Raises CameraLost, FrameTimeout, FrameDamaged, FrameUnrequested.
         """
         camera, settings = self._camera, self._settings
         if camera is None:
             raise CameraLost(f"camera {settings.serial} is not open")
         try:
-            while camera.GetGrabResultWaitObject().Wait(0):
-                camera.RetrieveResult(0, pylon.TimeoutHandling_Return).Release()
+            before, clock = self._order.unrequested, latched(camera)
+            if clock is None:
+                self._drop_waiting(camera)
             if settings.trigger == "software":
                 if not camera.WaitForFrameTriggerReady(settings.timeout_ms, pylon.TimeoutHandling_Return):
                     raise FrameTimeout(
                         f"camera {settings.serial}: not ready for a trigger within {settings.timeout_ms} ms"
                     )
                 camera.ExecuteSoftwareTrigger()
-            result = camera.RetrieveResult(settings.timeout_ms, pylon.TimeoutHandling_Return)
-            with result:
-                return self._frame(camera, result)
+            until_s = time.monotonic() + settings.timeout_ms / 1000
+            while True:
+                left_ms = max(0, round((until_s - time.monotonic()) * 1000))
+                with camera.RetrieveResult(left_ms, pylon.TimeoutHandling_Return) as result:
+                    taken = result.IsValid() and result.GrabSucceeded()
+                    if clock is not None and taken and is_before(stamp(result), clock, trigger_s):
+                        self._order.drop(result.BlockID)
+                        continue
+                    return self._frame(camera, result, clock, self._order.unrequested - before)
         except genicam.GenericException as error:
             self.close()
             raise CameraLost(f"camera {settings.serial}: {_first_line(error)}") from None
@@ -96,26 +124,59 @@ class PylonCamera:
             _release(self._camera)
             self._camera = None
 
-    def _frame(self, camera: pylon.InstantCamera, result: pylon.GrabResult) -> Frame:
+    def _drop_waiting(self, camera: pylon.InstantCamera) -> None:
+        """Drop all frames of earlier exposures, without a clock that tells which they are."""
+        while camera.GetGrabResultWaitObject().Wait(0):
+            with camera.RetrieveResult(0, pylon.TimeoutHandling_Return) as result:
+                if result.IsValid():
+                    self._order.drop(result.BlockID)
+        if self._settings.trigger != "software":  # a frame may still be on its way
+            self._restart(camera)
+
+    def _restart(self, camera: pylon.InstantCamera) -> None:
+        """Discard what comes late, so that it is not taken for the frame of the next part."""
+        camera.StopGrabbing()
+        self._order.restart()
+        camera.StartGrabbing(pylon.GrabStrategy_OneByOne)
+
+    def _frame(
+        self, camera: pylon.InstantCamera, result: pylon.GrabResult, clock: Latch | None, unrequested: int
+    ) -> Frame:
         settings = self._settings
         name = f"camera {settings.serial}"
         if not result.IsValid():
             if not camera.IsGrabbing() or camera.IsCameraDeviceRemoved():
                 self.close()
                 raise CameraLost(f"{name}: stopped grabbing")
-            _flush(camera)
+            self._restart(camera)
+            if unrequested:
+                raise FrameUnrequested(
+                    f"{name}: no frame was exposed after the trigger, {unrequested} before it; "
+                    "the edge must come after BUSY"
+                )
             raise FrameTimeout(f"{name}: no frame within {settings.timeout_ms} ms")
         if not result.GrabSucceeded():
+            self._order.skip()
             raise FrameDamaged(
                 f"{name}: frame incomplete ({result.GetErrorDescription() or 'no description'})"
             )
+        if lost := self._order.lost(result.BlockID):
+            raise FrameUnrequested(f"{name}: {lost}")
+        if clock is not None and is_impossible(stamp(result), clock, time.monotonic()):
+            raise FrameUnrequested(f"{name}: the frame's time stamp lies in the future; its clock was set")
         if (result.Width, result.Height) != (settings.width_px, settings.height_px):
             expected = f"{settings.width_px} x {settings.height_px}"
             size = f"{result.Width} x {result.Height} px instead of {expected} px"
             raise FrameDamaged(f"{name}: frame is {size}", wrong_size=True)
         if result.GetPixelType() != pylon.PixelType_Mono8:
             raise FrameDamaged(f"{name}: frame is not Mono8")
-        return Frame(np.array(result.Array, np.uint8), datetime.now(UTC), settings.serial, settings.origin)
+        return Frame(
+            np.array(result.Array, np.uint8),
+            datetime.now(UTC),
+            settings.serial,
+            settings.origin,
+            unrequested=unrequested,
+        )
 
 
 def _configure(camera: pylon.InstantCamera, settings: PylonSettings) -> None:
@@ -136,10 +197,28 @@ def _configure(camera: pylon.InstantCamera, settings: PylonSettings) -> None:
     camera.MaxNumBuffer.Value = 5
 
 
-def _flush(camera: pylon.InstantCamera) -> None:
-    """Discard a frame that comes late, so that it is not taken for that of the next part."""
-    camera.StopGrabbing()
-    camera.StartGrabbing(pylon.GrabStrategy_OneByOne)
+def latched(camera: pylon.InstantCamera) -> Latch | None:
+    """Return a reading of the camera's clock against the host's; None if the camera has no such clock."""
+    nodes = camera.GetNodeMap()
+    for latch_name, value_name, rate_name in CLOCKS:
+        latch, value = nodes.GetNode(latch_name), nodes.GetNode(value_name)
+        if latch is None or value is None or not genicam.IsWritable(latch):
+            continue
+        ticks_per_s = 1e9 if rate_name is None else float(nodes.GetNode(rate_name).Value)
+        for _ in range(LATCH_TRIALS):
+            before_s = time.monotonic()
+            latch.Execute()
+            after_s = time.monotonic()
+            reading = Latch(ticks=value.Value, before_s=before_s, after_s=after_s, ticks_per_s=ticks_per_s)
+            if after_s - before_s <= LATCH_S:
+                break
+        return reading
+    return None
+
+
+def stamp(result: pylon.GrabResult) -> int:
+    """Return the time of the exposure by the camera's clock."""
+    return int(result.TimeStamp)
 
 
 def _release(camera: pylon.InstantCamera) -> None:

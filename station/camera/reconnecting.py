@@ -2,15 +2,19 @@
 
 import logging
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from station.camera.port import Camera
 from station.defects import Reason
-from station.domain import Frame
-from station.errors import CameraLost, FrameDamaged, FrameTimeout
+from station.domain import Frame, Image, Origin
+from station.errors import CameraLost, FrameDamaged, FrameTimeout, FrameUnrequested
 
 log = logging.getLogger("weldgate.camera")
 
+SAMPLED_ROWS = 64
+"""One row of this many is compared first, to see fast that two images differ."""
 ALIVE_S = 1.0
 """Time between two checks whether the camera still answers."""
 
@@ -23,6 +27,8 @@ class Grab:
     reason: Reason | None
     grab_ms: float | None
     """Duration of the attempt; None if the camera was not asked."""
+    detail: str | None = field(default=None, kw_only=True)
+    """One line on why there is no frame; None if the reason says it all."""
 
     def __post_init__(self) -> None:
         if (self.frame is None) == (self.reason is None):
@@ -38,6 +44,10 @@ class ReconnectingCamera:
         self._tried_s = self._alive_s = -1e9
         self._adjusted: tuple[float | None, float | None] | None = None
         """Exposure and gain set by hand; None: those of the settings."""
+        self._previous: Image | None = None
+        """Last image of a real camera, whose noise never repeats."""
+        self._unrequested = 0
+        """Number of frames that no trigger had asked for, since the start."""
         self.connected = False
         self.message = "the camera is not opened yet"
         """Reason why the camera is not connected; empty if it is."""
@@ -59,21 +69,27 @@ class ReconnectingCamera:
                 self.connected, self.message, self._alive_s = True, "", now_s
             self._tried_s = time.monotonic()
 
-    def grab(self) -> Grab:
-        """Take a frame; a lost or failing camera gives a reason, not an exception."""
+    def grab(self, trigger_s: float | None = None) -> Grab:
+        """Take a frame exposed after `trigger_s` (monotonic; None: now).
+
+        A lost or failing camera gives a reason, not an exception.
+        """
         start = time.perf_counter()
-        frame, reason = None, None
+        frame, reason, detail = None, None, None
         if not self.connected:
             reason = Reason.CAMERA_LOST
         else:
             try:
-                frame = self._camera.grab()
+                frame = self._checked(self._camera.grab(time.monotonic() if trigger_s is None else trigger_s))
             except FrameTimeout as error:
                 log.warning("%s", error)
                 reason = Reason.NO_FRAME
             except FrameDamaged as error:
                 log.warning("%s", error)
                 reason = Reason.WRONG_SIZE if error.wrong_size else Reason.INCOMPLETE_FRAME
+            except FrameUnrequested as error:
+                log.error("%s", error)
+                reason, detail = Reason.NOT_OF_TRIGGER, str(error)
             except CameraLost as error:
                 self._lost(str(error))
                 reason = Reason.CAMERA_LOST
@@ -81,7 +97,25 @@ class ReconnectingCamera:
                 log.exception("the camera failed with an error")
                 self._lost("the camera failed with an error: see the log")
                 reason = Reason.INTERNAL
-        return Grab(frame, reason, (time.perf_counter() - start) * 1000)
+        return Grab(frame, reason, (time.perf_counter() - start) * 1000, detail=detail)
+
+    def _checked(self, frame: Frame) -> Frame:
+        """Return the frame. Raises FrameUnrequested if a real camera repeats an image."""
+        if frame.unrequested:
+            self._unrequested += frame.unrequested
+            log.warning(
+                "camera: %d frames without a trigger were dropped, %d since the start; check trigger line",
+                frame.unrequested,
+                self._unrequested,
+            )
+        if frame.origin is Origin.CAMERA:
+            previous, self._previous = self._previous, frame.image
+            if previous is not None and _same(previous, frame.image):
+                raise FrameUnrequested(
+                    f"camera {frame.source}: two images in succession are identical, which no sensor gives; "
+                    "restart the camera"
+                )
+        return frame
 
     def adjust(self, exposure_us: float | None, gain_db: float | None) -> None:
         """Set exposure and gain for the next frames; None: as in the settings."""
@@ -123,3 +157,9 @@ class ReconnectingCamera:
     def close(self) -> None:
         """Release the device."""
         self._camera.close()
+
+
+def _same(first: Image, second: Image) -> bool:
+    """Return whether two images are identical."""
+    sampled = np.array_equal(first[::SAMPLED_ROWS], second[::SAMPLED_ROWS])
+    return sampled and np.array_equal(first, second)

@@ -31,8 +31,11 @@ class ReplayCamera:
             raise CameraLost(f"{self._folder}: no images in this folder; set camera.folder")
         self._files = names
 
-    def grab(self) -> Frame:
-        """Return the next file. Raises FrameDamaged if it cannot be read, CameraLost after the last one."""
+    def grab(self, trigger_s: float) -> Frame:
+        """Return the next file, whenever it was written.
+
+        Raises FrameDamaged if it cannot be read, CameraLost after the last one.
+        """
         if not self._files:
             raise CameraLost(f"{self._folder}: no more images")
         path = self._folder / self._files.pop(0)

@@ -1,6 +1,7 @@
 """`weldgate check`: checks the parts of a station one after the other."""
 
 import socket
+import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
@@ -75,7 +76,7 @@ def _camera(settings: Settings) -> None:
     try:
         camera.open()
         if settings.camera.size_px is None:
-            height_px, width_px = camera.grab().image.shape
+            height_px, width_px = camera.grab(time.monotonic()).image.shape
             check_view(settings, (width_px, height_px))
     finally:
         camera.close()

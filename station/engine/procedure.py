@@ -121,14 +121,14 @@ class Procedure:
         """Grab the part of this trigger; no frame if the trigger has ended and another part may be there."""
         if not self._line.awaits_result(trigger):
             return Grab(None, Reason.ABORTED, None)
-        grab = self._grab()
+        grab = self._grab(trigger.accepted_s)
         self._line.exposure_done(trigger)
         return grab
 
-    def _grab(self) -> Grab:
+    def _grab(self, trigger_s: float | None = None) -> Grab:
         """Grab with the exposure of the settings, never with one that is tried by hand."""
         self._camera.adjust(None, None)
-        return self._camera.grab()
+        return self._camera.grab(trigger_s)
 
     def _update_self_checks(self, record: Record, trigger: Trigger | None) -> None:
         """Update the self-checks by this record; test images do not count for the drift."""
@@ -184,7 +184,7 @@ class Procedure:
 def _judge(grab: Grab, inspector: Inspector) -> Inspection:
     timing = Timing(grab_ms=grab.grab_ms)
     if grab.frame is None:
-        return Inspection.error(grab.reason or Reason.INTERNAL, timing=timing)
+        return Inspection.error(grab.reason or Reason.INTERNAL, timing=timing, detail=grab.detail)
     try:
         inspection = inspector.inspect(grab.frame.image, grab.grab_ms)
         if inspection.ring is None and (problem := inspector.view_problem(grab.frame.image)):

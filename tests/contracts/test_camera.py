@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from time import monotonic
 from typing import assert_never, get_args
 
 import cv2
@@ -13,7 +14,7 @@ from station.camera.choose import make_camera
 from station.camera.port import Camera
 from station.camera.pylon import PylonCamera
 from station.camera.replay import ReplayCamera
-from station.domain import Image, Origin
+from station.domain import Frame, Image, Origin
 from station.errors import CameraLost, FrameDamaged, FrameTimeout
 from station.settings.camera import AnyCamera, CameraSettings, PylonSettings, ReplaySettings
 from synth.camera.feed import Feed
@@ -43,10 +44,10 @@ class Fed(PylonCamera):
         super().__init__(EMULATED)
         self.feed, self.images = feed, images
 
-    def grab(self):  # type: ignore[no-untyped-def]
+    def grab(self, trigger_s: float) -> Frame:
         if self.images:
             self.feed.show(self.images.pop(0))
-        return super().grab()
+        return super().grab(trigger_s)
 
 
 @pytest.fixture(params=CAMERAS.values(), ids=CAMERAS)
@@ -123,7 +124,7 @@ def test_each_trigger_gives_the_next_picture_to_the_pixel(settings: AnyCamera, m
     camera = make(images)
     camera.open()
     for wanted in images:
-        frame = camera.grab()
+        frame = camera.grab(monotonic())
         assert (frame.image == wanted).all()
         assert frame.image.dtype == np.uint8
         assert frame.origin is settings.origin
@@ -134,14 +135,14 @@ def test_each_trigger_gives_the_next_picture_to_the_pixel(settings: AnyCamera, m
 def test_frames_are_their_own(make: Make) -> None:
     camera = make([picture(10), picture(200)])
     camera.open()
-    first = camera.grab()
-    camera.grab()
+    first = camera.grab(monotonic())
+    camera.grab(monotonic())
     assert first.image[5, 5] == 10
 
 
 def test_grab_before_open_is_lost(make: Make) -> None:
     with pytest.raises(CameraLost):
-        make([picture(1)]).grab()
+        make([picture(1)]).grab(monotonic())
 
 
 def test_alive_says_whether_it_can_grab(make: Make) -> None:
@@ -154,11 +155,11 @@ def test_alive_says_whether_it_can_grab(make: Make) -> None:
 def test_close_twice_and_open_again(make: Make) -> None:
     camera = make([picture(1), picture(2)])
     camera.open()
-    camera.grab()
+    camera.grab(monotonic())
     camera.close()
     camera.close()
     camera.open()
-    assert camera.grab().image[5, 5] == 2
+    assert camera.grab(monotonic()).image[5, 5] == 2
 
 
 # What only the emulated camera can show
@@ -177,12 +178,12 @@ def fed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Fed]:
 def test_a_withdrawn_picture_is_a_damaged_frame_and_the_camera_goes_on(fed: Fed) -> None:
     fed.open()
     fed.feed.show(picture(3))
-    fed.grab()
+    fed.grab(monotonic())
     fed.feed.withdraw()
     with pytest.raises(FrameDamaged):
-        fed.grab()
+        fed.grab(monotonic())
     fed.feed.show(picture(4))
-    assert fed.grab().image[5, 5] == 4
+    assert fed.grab(monotonic()).image[5, 5] == 4
 
 
 def test_an_incomplete_frame_is_never_given(fed: Fed) -> None:
@@ -192,15 +193,15 @@ def test_an_incomplete_frame_is_never_given(fed: Fed) -> None:
     fed._camera.ForceFailedBufferCount.Value = 1
     fed._camera.ForceFailedBuffer.Execute()
     with pytest.raises(FrameDamaged, match="incompletely"):
-        fed.grab()
-    assert fed.grab().image[5, 5] == 3
+        fed.grab(monotonic())
+    assert fed.grab(monotonic()).image[5, 5] == 3
 
 
 def test_a_frame_of_another_size_is_never_given(fed: Fed) -> None:
     fed.open()
     fed.feed.show(picture(3)[:1000, :1200])
     with pytest.raises(FrameDamaged, match="1200 x 1000") as caught:
-        fed.grab()
+        fed.grab(monotonic())
     assert caught.value.wrong_size
 
 
@@ -210,10 +211,10 @@ def test_a_transport_error_is_camera_lost_and_open_mends_it(fed: Fed) -> None:
     assert fed._camera is not None
     fed._camera.StreamGrabber.ImposedError.Value = "cable pulled"
     with pytest.raises(CameraLost, match="cable pulled"):
-        fed.grab()
+        fed.grab(monotonic())
     assert not fed.alive()
     fed.open()
-    assert fed.grab().image[5, 5] == 3
+    assert fed.grab(monotonic()).image[5, 5] == 3
 
 
 def test_no_edge_on_the_line_is_a_timeout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -230,7 +231,7 @@ def test_no_edge_on_the_line_is_a_timeout(tmp_path: Path, monkeypatch: pytest.Mo
     camera = PylonCamera(settings)
     camera.open()
     with pytest.raises(FrameTimeout, match="100 ms"):
-        camera.grab()
+        camera.grab(monotonic())
     camera.close()
 
 
@@ -241,7 +242,7 @@ def test_an_absent_camera_is_said_and_comes_back(fed: Fed) -> None:
     os.environ["PYLON_CAMEMU"] = "1"
     fed.open()
     fed.feed.show(picture(9))
-    assert fed.grab().image[5, 5] == 9
+    assert fed.grab(monotonic()).image[5, 5] == 9
 
 
 # What only replay can show
@@ -257,6 +258,6 @@ def test_an_unreadable_file_is_a_damaged_frame(tmp_path: Path) -> None:
     camera = ReplayCamera(ReplaySettings(kind="replay", folder=tmp_path))
     camera.open()
     with pytest.raises(FrameDamaged, match=r"a\.png"):
-        camera.grab()
+        camera.grab(monotonic())
     with pytest.raises(CameraLost, match="no more"):
-        camera.grab()
+        camera.grab(monotonic())

@@ -52,6 +52,7 @@ CODES = {
         "internal error": 16,
         "segment not seen": 17,
         "unlike the training images": 18,
+        "frame not of this trigger": 19,
     }
 }
 """What a PLC that was programmed against each version of the map reads; entries are added, never changed.

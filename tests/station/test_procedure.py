@@ -20,7 +20,7 @@ from station.engine.alarm_log import AlarmLog
 from station.engine.listener import Listener
 from station.engine.procedure import Procedure
 from station.engine.self_checks import Master, SelfChecks
-from station.errors import CameraLost, FrameDamaged, FrameTimeout
+from station.errors import CameraLost, FrameDamaged, FrameTimeout, FrameUnrequested
 from station.inspection.inspector import Inspector
 from station.inspection.loading import Loaded
 from station.plc.line import make_line
@@ -42,7 +42,7 @@ class Camera:
 
     def open(self) -> None: ...
 
-    def grab(self) -> Frame:
+    def grab(self, trigger_s: float) -> Frame:
         if self.fault is not None:
             raise self.fault
         return Frame(self.image, datetime.now(UTC), "cam", Origin.CAMERA)
@@ -194,6 +194,7 @@ FAULTS = [
     (FrameTimeout("late"), Reason.NO_FRAME, True),
     (FrameDamaged("torn"), Reason.INCOMPLETE_FRAME, True),
     (FrameDamaged("small", wrong_size=True), Reason.WRONG_SIZE, True),
+    (FrameUnrequested("frames were lost"), Reason.NOT_OF_TRIGGER, True),
     (CameraLost("gone"), Reason.CAMERA_LOST, False),
     (ValueError("unforeseen"), Reason.INTERNAL, False),
 ]

@@ -242,10 +242,10 @@ def test_a_part_is_never_judged_with_an_exposure_that_was_tried_by_hand(
     good, used = frames[label_with("OK")["frame"]], []
     grab = PylonCamera.grab
 
-    def noting(camera: PylonCamera) -> Frame:
+    def noting(camera: PylonCamera, trigger_s: float) -> Frame:
         assert camera._camera is not None
         used.append(camera._camera.ExposureTime.Value)
-        return grab(camera)
+        return grab(camera, trigger_s)
 
     monkeypatch.setattr(PylonCamera, "grab", noting)
     running.feed.show(good)

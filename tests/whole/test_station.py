@@ -356,10 +356,10 @@ def test_a_camera_fault_that_nobody_foresaw_costs_one_part_and_leaves_a_record(
         [ValueError("nobody foresaw this")],
     )
 
-    def fails_once(camera: PylonCamera) -> Frame:
+    def fails_once(camera: PylonCamera, trigger_s: float) -> Frame:
         if faults:
             raise faults.pop()
-        return grab(camera)
+        return grab(camera, trigger_s)
 
     monkeypatch.setattr(PylonCamera, "grab", fails_once)
     answers = station.run([good, good])

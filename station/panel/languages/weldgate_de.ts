@@ -354,6 +354,10 @@
         <translation>den Trainingsbildern unähnlich</translation>
     </message>
     <message>
+        <source>frame not of this trigger</source>
+        <translation>Bild nicht zu diesem Trigger</translation>
+    </message>
+    <message>
         <source>no structure</source>
         <translation>keine Struktur</translation>
     </message>
@@ -524,6 +528,10 @@
     <message>
         <source>judge the part again; if it comes back, check light, focus and surface</source>
         <translation>Teil neu prüfen; tritt es erneut auf: Licht, Fokus und Oberfläche prüfen</translation>
+    </message>
+    <message>
+        <source>judge the part again; if it comes back, check the trigger line: its edge must come after BUSY, once per part</source>
+        <translation>Teil neu prüfen; tritt es erneut auf: Triggerleitung prüfen: Flanke erst nach BUSY, einmal je Teil</translation>
     </message>
     <message>
         <source>operator</source>

@@ -98,6 +98,7 @@ _PART_ACTIONS = {
     Reason.INTERNAL: "send the engine's log to the maker",
     Reason.SEGMENT_NOT_SEEN: "check light, glass and nest for dirt, shadow and glare",
     Reason.UNLIKE_TRAINING: "check light, focus and surface",
+    Reason.NOT_OF_TRIGGER: "check the trigger line: its edge must come after BUSY, once per part",
 }
 for _reason, _action in _PART_ACTIONS.items():
     TEXTS[ERROR_NOT_JUDGED + _reason.code] = Explained(str(_reason), _AGAIN + _action)
