@@ -70,6 +70,8 @@ class Frame:
     origin: Origin
     unrequested: int = field(default=0, kw_only=True)
     """Number of frames that were dropped before it, as no trigger had asked for them."""
+    features: str = field(default="", kw_only=True)
+    """All features of the camera, as text; empty for a recorded image."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,6 +79,8 @@ class Record:
     inspection: Inspection
     provenance: Provenance
     purpose: Purpose = Purpose.PART
+    camera_sha256: str | None = None
+    """SHA-256 of the camera's features, which are in `cameras/` under this name; None for recorded images."""
     chain_before: str = ""
     """Hash of the chain of all records before this one."""
     format: int = FORMAT

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from station.archive.cameras import CameraFeatures
 from station.archive.room import Disk, Room
 from station.archive.schema import NAME, SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
@@ -32,6 +33,8 @@ class StoredFrame:
     sha256: str
     path: Path | None
     """None if the disk is full."""
+    camera_sha256: str | None
+    """Name of the camera's features; None for a recorded image."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,7 @@ class Archive:
         self._folder = settings.folder
         self._stops_when_full = settings.when_full == "stop"
         self._disk = Disk(settings)
+        self._cameras = CameraFeatures(settings.folder)
         self._failed_s: float | None = None
         """Time at which a record could not be written; None if the last one was written."""
         try:
@@ -133,11 +137,12 @@ class Archive:
     def _store(self, frame: Frame) -> StoredFrame:
         png = encode_png(frame.image)
         sha256 = hashlib.sha256(png).hexdigest()
+        camera_sha256 = self._cameras.keep(frame.features) if frame.features else None
         if self.room() is Room.FULL:
-            return StoredFrame(sha256, None)
+            return StoredFrame(sha256, None, camera_sha256)
         path = self._folder / INCOMING
         write_whole(path, png, durable=True)
-        return StoredFrame(sha256, path)
+        return StoredFrame(sha256, path, camera_sha256)
 
     def commit(
         self, pending: Pending, inspection: Inspection, part: Part, provenance: Provenance, *, now: datetime
@@ -171,11 +176,11 @@ class Archive:
             sync_folder(self._folder)
         for suffix in ("png", "json"):  # left over from an interrupted part
             (day / f"{inspection_id:08d}.{suffix}").unlink(missing_ok=True)
-        frame_file = sha256 = None
+        frame_file = sha256 = camera_sha256 = None
         state = "none" if pending.frame is None else "kept"
         if pending.stored is not None:
             stored = pending.stored.result()
-            sha256 = stored.sha256
+            sha256, camera_sha256 = stored.sha256, stored.camera_sha256
             if stored.path is not None and (self.room() > Room.THIN or inspection.verdict is not Verdict.OK):
                 frame_file = f"{day.name}/{inspection_id:08d}.png"
                 stored.path.replace(self._folder / frame_file)
@@ -193,6 +198,7 @@ class Archive:
             inspection=inspection,
             provenance=provenance,
             purpose=part.purpose,
+            camera_sha256=camera_sha256,
             chain_before=self._chain,
         )
         text = to_json(record)

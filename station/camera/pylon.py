@@ -6,13 +6,12 @@ from datetime import UTC, datetime
 import numpy as np
 from pypylon import genicam, pylon
 
+from station.camera.features import NEEDED, Value, differs, expected
 from station.camera.frame_order import FrameOrder, Latch, is_before, is_impossible
 from station.domain import Frame, Origin
 from station.errors import CameraLost, FrameDamaged, FrameTimeout, FrameUnrequested
 from station.settings.camera import PylonSettings
 
-SOURCES = {"software": "Software", "line1": "Line1"}
-"""GenICam name of each trigger source."""
 CLOCKS = (
     ("TimestampLatch", "TimestampLatchValue", None),
     ("GevTimestampControlLatch", "GevTimestampValue", "GevTimestampTickFrequency"),
@@ -30,6 +29,8 @@ class PylonCamera:
         self._settings = settings
         self._camera: pylon.InstantCamera | None = None
         self._order = FrameOrder()
+        self._features = ""
+        """All features of the open camera, as text."""
 
     def open(self) -> None:
         """Connect and configure, also after a loss. Raises CameraLost."""
@@ -42,14 +43,18 @@ class PylonCamera:
         try:
             camera = pylon.InstantCamera(pylon.TlFactory.GetInstance().CreateFirstDevice(info))
             camera.Open()
-            _configure(camera, settings)
+            self._features = _configure(camera, settings)
             self._order = FrameOrder()
             camera.StartGrabbing(pylon.GrabStrategy_OneByOne)
             clock = latched(camera)
-        except genicam.GenericException as error:
+        except (genicam.GenericException, CameraLost) as error:
             if camera is not None:
                 _release(camera)
             name = f"camera {settings.serial} ({settings.device_class})"
+            if isinstance(error, CameraLost):
+                raise CameraLost(
+                    f"{name}: {error}; set it with the maker's tool, or use another camera"
+                ) from None
             raise CameraLost(f"{name}: {_first_line(error)}; check power, cable and camera.serial") from None
         self._camera = camera
         if clock is None and settings.trigger != "software" and settings.origin is Origin.CAMERA:
@@ -176,25 +181,46 @@ class PylonCamera:
             settings.serial,
             settings.origin,
             unrequested=unrequested,
+            features=self._features,
         )
 
 
-def _configure(camera: pylon.InstantCamera, settings: PylonSettings) -> None:
-    """Set all features; emulator and ace 2 use the same names."""
-    for node, value in ((camera.WidthMax, settings.width_px), (camera.HeightMax, settings.height_px)):
-        if genicam.IsWritable(node) and node.Value < value:
-            node.Value = value
-    camera.PixelFormat.Value = "Mono8"
-    camera.Width.Value = settings.width_px
-    camera.Height.Value = settings.height_px
-    camera.ExposureAuto.TrySetValue("Off")
-    camera.GainAuto.TrySetValue("Off")
-    camera.ExposureTime.Value = settings.exposure_us
-    camera.Gain.Value = settings.gain_db
-    camera.TriggerSelector.Value = "FrameStart"
-    camera.TriggerMode.Value = "On"
-    camera.TriggerSource.Value = SOURCES[settings.trigger]
+def _configure(camera: pylon.InstantCamera, settings: PylonSettings) -> str:
+    """Set all features that matter and return all there are, as text. Raises CameraLost if one cannot be set.
+
+    Emulator and ace 2 use the same names.
+    """
+    for node, size in ((camera.WidthMax, settings.width_px), (camera.HeightMax, settings.height_px)):
+        if genicam.IsWritable(node) and node.Value < size:
+            node.Value = size
+    nodes = camera.GetNodeMap()
+    for selector in camera.TriggerSelector.GetSettableValues():
+        camera.TriggerSelector.Value = selector
+        camera.TriggerMode.TrySetValue("Off")
+    values = expected(settings)
+    for name, value in values.items():
+        _set(nodes.GetNode(name), name, value)
+    for name, value in values.items():  # one may have changed another
+        node = nodes.GetNode(name)
+        if node is not None and genicam.IsReadable(node) and differs(node.Value, value):
+            raise CameraLost(f"{name} is {node.Value}, not {value}, after all features were set")
     camera.MaxNumBuffer.Value = 5
+    return str(pylon.FeaturePersistence.SaveToString(nodes))
+
+
+def _set(node: genicam.IValue | None, name: str, value: Value) -> None:
+    """Give a feature its value. Raises CameraLost if it is needed and absent, or has another value."""
+    if node is None or not (genicam.IsReadable(node) or genicam.IsWritable(node)):
+        if name in NEEDED:
+            raise CameraLost(f"it has no feature {name}")
+        return
+    if genicam.IsReadable(node) and not differs(node.Value, value):
+        return
+    if not genicam.IsWritable(node):
+        raise CameraLost(f"{name} is {node.Value}, must be {value}, and cannot be changed")
+    node.Value = value
+    if genicam.IsReadable(node) and differs(node.Value, value):
+        raise CameraLost(f"{name} is {node.Value} although {value} was set")
 
 
 def latched(camera: pylon.InstantCamera) -> Latch | None:

@@ -54,7 +54,12 @@ class PylonSettings(CameraSettings):
     @property
     def origin(self) -> Origin:
         """Source of the frames; parts of an emulated camera carry the SIMULATED flag."""
-        return Origin.SIMULATED if self.device_class == "BaslerCamEmu" else Origin.CAMERA
+        return Origin.SIMULATED if self.is_emulated else Origin.CAMERA
+
+    @property
+    def is_emulated(self) -> bool:
+        """True if pylon emulates the camera."""
+        return self.device_class == "BaslerCamEmu"
 
     @property
     def identity(self) -> tuple[str, ...]:
