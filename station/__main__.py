@@ -7,7 +7,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -166,9 +166,13 @@ def _sentence(text: str) -> str:
 
 
 def _engine(arguments: argparse.Namespace) -> int:
+    return _run_engine(arguments.settings)
+
+
+def _run_engine(settings: Path, at_end: Callable[[], None] = lambda: None) -> int:
     from station.engine.startup import run_engine
 
-    run_engine(arguments.settings)
+    run_engine(settings, at_end)
     return 0
 
 
@@ -191,7 +195,7 @@ def _run(arguments: argparse.Namespace) -> int:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     panel = subprocess.Popen([*room_command("station"), "panel", "-c", str(arguments.settings)])
     try:
-        return _engine(arguments)
+        return _run_engine(arguments.settings, panel.terminate)
     finally:
         panel.terminate()
         try:

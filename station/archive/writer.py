@@ -4,11 +4,13 @@ import hashlib
 import sqlite3
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
 from station.archive.cameras import CameraFeatures
+from station.archive.in_progress import InProgress, announce, announced, done
 from station.archive.room import Disk, Room
 from station.archive.schema import NAME, SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
@@ -69,6 +71,10 @@ class Archive:
             for left in self._folder.glob(f"{INCOMING}*"):
                 left.unlink()
             self._index = open_index(self._folder)
+            self._following = self._next_id()
+            """Number of the next record."""
+            self.interrupted = self._interrupted()
+            """Part that was being inspected when the engine ended, and has no record."""
             self._chain = last_link(self._index)
             self._guard()
         except (OSError, sqlite3.Error, UnicodeError, RecordError) as error:
@@ -89,6 +95,20 @@ class Archive:
                 f"{self._folder}: has record {max(numbers)}, but its index ends at {self._next_id() - 1}; "
                 "restore index.sqlite, or set another archive.folder"
             )
+
+    def _interrupted(self) -> Part | None:
+        found = announced(self._folder)
+        return None if found is None or found.inspection_id < self._following else found.part
+
+    def announce(self, part: Part) -> None:
+        """Remember that a part is being inspected: after a sudden end the next start records it as ERROR.
+
+        May be called from any thread. Raises RecordError.
+        """
+        try:
+            announce(self._folder, InProgress(part, self._following))
+        except OSError as error:
+            raise RecordError(f"{self._folder}: the part in progress cannot be noted: {error}") from None
 
     def _next_id(self) -> int:
         row = self._index.execute("SELECT seq FROM sqlite_sequence WHERE name = 'records'").fetchone()
@@ -206,6 +226,8 @@ class Archive:
         write_whole(self._folder / record_file, text, durable=True)
         sync_folder(day)
         self._list(record, record_file, hashlib.sha256(text).hexdigest(), state)
+        with suppress(OSError):  # its number says that the part has its record
+            done(self._folder)
         return record
 
     def _list(self, record: Record, record_file: str, sha256: str, frame_state: str) -> None:
@@ -237,4 +259,4 @@ class Archive:
             marks = ", ".join(f":{name}" for name in values)
             self._index.execute(f"INSERT INTO records ({', '.join(values)}) VALUES ({marks})", values)
             self._index.executemany("INSERT INTO segments VALUES (?, ?, ?)", found)
-        self._chain = chain
+        self._chain, self._following = chain, record.inspection_id + 1

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Collection
 from pathlib import Path
 
+from station.engine.check_ins import DISK_S, CheckIns
 from station.errors import RecordError
 from station.journal.journal import Kind, entries
 from station.journal.journal_writer import append
@@ -22,9 +23,9 @@ ENTRIES_READ = 2000
 class AlarmLog:
     """Journal of active alarms and of events (alarms that do not last)."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, check_ins: CheckIns | None = None) -> None:
         """`folder`: the archive; alarms active at the last shutdown stay active until they clear."""
-        self._folder = folder
+        self._folder, self._check_ins = folder, check_ins or CheckIns()
         self._active = _still_active(folder)
         self._queue: queue.Queue[tuple[Kind, int, str] | None] = queue.Queue(MAX_WAITING)
         self._thread = threading.Thread(target=self._run, name="alarms", daemon=True)
@@ -61,7 +62,8 @@ class AlarmLog:
         while (item := self._queue.get()) is not None:
             kind, code, subject = item
             try:
-                append(self._folder, kind, "station", f"16#{code:04X}", after=subject)
+                with self._check_ins.working("alarms", DISK_S):
+                    append(self._folder, kind, "station", f"16#{code:04X}", after=subject)
             except RecordError as error:
                 log.error("%s", error)
 

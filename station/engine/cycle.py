@@ -10,11 +10,13 @@ from station.camera.reconnecting import ReconnectingCamera
 from station.domain import Origin
 from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog
+from station.engine.check_ins import IDLE_S, CheckIns
 from station.engine.health import StationState, health
 from station.engine.listener import Listener
 from station.engine.operator_orders import OperatorOrders, no_part_in_progress
 from station.engine.orders import Reload, Service, UseSettings
 from station.engine.procedure import Procedure
+from station.engine.recording import note_in_progress
 from station.engine.self_checks import SelfChecks
 from station.engine.settings_use import RELOAD_REFUSED, use_settings
 from station.engine.setup_image import take_setup_image
@@ -26,7 +28,7 @@ from station.plc.port import Command, Line, Trigger
 
 log = logging.getLogger("weldgate.cycle")
 
-IDLE_S = 0.1
+WAIT_S = 0.1
 """Longest wait for a trigger or command before the other tasks have their turn."""
 
 
@@ -46,8 +48,14 @@ class Cycle:
         listener: Listener,
         alarm_log: AlarmLog,
         clock_in_doubt: Callable[[], bool] = lambda: False,
+        check_ins: CheckIns | None = None,
+        part_s: float = IDLE_S,
     ) -> None:
-        """`origin`: origin of the camera's frames; `loaded`: the recipe to start with."""
+        """`origin`: origin of the camera's frames; `loaded`: the recipe to start with.
+
+        `part_s`: time after which the cycle hangs if a part is not done.
+        """
+        self._check_ins, self._part_s = check_ins or CheckIns(), part_s
         self._clock_in_doubt = clock_in_doubt
         self._camera = camera
         self._line = line
@@ -80,12 +88,13 @@ class Cycle:
         """Serve triggers until `stop` is set, then close the camera. Raises LineError."""
         try:
             while not stop.is_set():
+                self._check_ins.expect("cycle", IDLE_S)
                 self._camera.keep_open()
                 self._take_orders()
                 state = self._state()
                 self._line.check_in(health(state))
                 self._status.send(state)
-                request = self._line.next_request(IDLE_S)
+                request = self._line.next_request(WAIT_S)
                 if isinstance(request, Trigger):
                     self._serve(request)
                 elif isinstance(request, Command):
@@ -94,8 +103,16 @@ class Cycle:
                     self._self_checks.run_when_idle()
         finally:
             self._camera.close()
+            self._check_ins.rest("cycle")
+
+    def note_unserved(self) -> None:
+        """Note on disk a trigger that the cycle never took, as it hangs; call from another thread."""
+        request = self._line.next_request(0)
+        if isinstance(request, Trigger):
+            note_in_progress(self._archive, self._procedure.part_of(request))
 
     def _serve(self, trigger: Trigger) -> None:
+        self._check_ins.expect("cycle", self._part_s)
         failed = f"part of trigger {trigger.trigger_id} was not answered"
         answered = self._guarded(partial(self._procedure.inspect_part, trigger, self._loaded), failed)
         if not answered and self._line.awaits_result(trigger):

@@ -11,10 +11,11 @@ from station.channel.events import Event, StatusEvent
 from station.channel.request_socket import RequestServer
 from station.channel.requests import FAULT, Answer, ChangeSettings, Message, ReloadSettings
 from station.engine.active_settings import ActiveSettings
+from station.engine.check_ins import IDLE_S, CheckIns
 from station.engine.logins import Logins
 from station.engine.operator_desk import OperatorDesk, Reply
 from station.engine.orders import Order
-from station.engine.settings_change import SettingsChange
+from station.engine.settings_change import PATIENCE_S, SettingsChange
 from station.errors import WeldgateError
 from station.journal.accounts import Accounts
 from station.plc.port import Counts
@@ -34,10 +35,17 @@ class OperatorRequests:
     """Owner of accounts, settings, acknowledgements and their journal entries; the cycle only gets orders."""
 
     def __init__(
-        self, server: RequestServer, path: Path, active: ActiveSettings, hand_over: Callable[[Order], None]
+        self,
+        server: RequestServer,
+        path: Path,
+        active: ActiveSettings,
+        hand_over: Callable[[Order], None],
+        *,
+        check_ins: CheckIns | None = None,
     ) -> None:
         """`path`: path of the settings file; `hand_over` gives an order to the cycle."""
         self._server, self._stop = server, threading.Event()
+        self._check_ins = check_ins or CheckIns()
         self._status: StatusEvent | None = None
         logins = Logins(lambda: active.settings.panel.logout_min * 60)
         folder = active.settings.archive.folder
@@ -70,11 +78,13 @@ class OperatorRequests:
 
     def _run(self) -> None:
         while not self._stop.is_set():
+            self._check_ins.expect("requests", IDLE_S)
             try:
                 self._serve_once()
             except Exception:  # a faulty request must not affect other windows
                 log.exception("requests could not be served")
         self._desk.close()
+        self._check_ins.rest("requests")
 
     def _serve_once(self) -> None:
         for incoming in self._server.received(POLL_S):
@@ -97,9 +107,11 @@ class OperatorRequests:
     def _make_changes(self) -> None:
         while not self._stop.is_set():
             try:
-                self._changes.get(timeout=POLL_S)()
+                change = self._changes.get(timeout=POLL_S)
             except queue.Empty:
                 continue
+            with self._check_ins.working("settings", PATIENCE_S + IDLE_S):
+                change()
 
     def _make_change(self, who: str, message: Message, reply: Reply) -> None:
         request, refusal = message.request, FAULT

@@ -17,7 +17,7 @@ from station.domain import Frame, Inspection, Origin, Purpose, Timing
 from station.engine.alarm_log import AlarmLog
 from station.engine.listener import Listener
 from station.engine.plc_result import plc_result
-from station.engine.recording import mark_shown, unrecorded, write_record
+from station.engine.recording import mark_shown, note_in_progress, unrecorded, write_record
 from station.engine.self_checks import SelfChecks
 from station.inspection.inspector import Inspector
 from station.inspection.loading import Loaded
@@ -66,7 +66,9 @@ class Procedure:
 
     def inspect_part(self, trigger: Trigger, loaded: Loaded) -> None:
         """Inspect the part or master of a trigger and answer the PLC."""
-        self._inspect(self._grab_for(trigger), self._triggered(trigger), loaded, trigger)
+        part = self.part_of(trigger)
+        note_in_progress(self._archive, part)
+        self._inspect(self._grab_for(trigger), part, loaded, trigger)
 
     def inspect_now(self, master: str, loaded: Loaded) -> None:
         """Inspect what is in the nest now, without the PLC; `master`: serial of a master, or empty."""
@@ -76,7 +78,7 @@ class Procedure:
     def show_error(self, trigger: Trigger, loaded: Loaded) -> None:
         """Show ERROR for a trigger whose inspection failed, so that no old verdict stays in the window."""
         self._alarm_log.add_event(ERROR_DEADLINE, f"trigger {trigger.trigger_id}, {trigger.serial}")
-        record = unrecorded(Inspection.error(Reason.INTERNAL), self._triggered(trigger), loaded.provenance)
+        record = unrecorded(Inspection.error(Reason.INTERNAL), self.part_of(trigger), loaded.provenance)
         self._listener.event(
             PartEvent(
                 at_s=time.monotonic(),
@@ -113,7 +115,8 @@ class Procedure:
         )
         self._show(grab.frame, event)
 
-    def _triggered(self, trigger: Trigger) -> Part:
+    def part_of(self, trigger: Trigger) -> Part:
+        """Return the part or master that a trigger is about."""
         purpose = Purpose.GOLDEN if trigger.golden else Purpose.PART
         return Part(trigger.serial, trigger.trigger_id, self._origin, purpose)
 

@@ -11,6 +11,9 @@ from station.records import Part, Provenance, Record
 
 log = logging.getLogger("weldgate.recorder")
 
+INTERRUPTED = "the engine ended while the part was inspected"
+"""Detail in the record of such a part."""
+
 
 def write_record(
     archive: Archive,
@@ -54,3 +57,23 @@ def mark_shown(archive: Archive, record: Record, shown: bool) -> None:
         archive.mark_shown(record.inspection_id, shown)
     except RecordError as error:
         log.error("%s", error)
+
+
+def note_in_progress(archive: Archive, part: Part) -> None:
+    """Note on disk that a part is being inspected."""
+    try:
+        archive.announce(part)
+    except RecordError as error:
+        log.error("%s", error)
+
+
+def record_interrupted(archive: Archive, provenance: Provenance) -> Record | None:
+    """Return the record, ERROR, of the part during which the engine ended; None if there was no part."""
+    part = archive.interrupted
+    if part is None:
+        return None
+    inspection = Inspection.error(Reason.INTERNAL, detail=INTERRUPTED)
+    record = write_record(archive, archive.begin(None), inspection, part, provenance=provenance)
+    archive.interrupted = None
+    log.error("part %d, %s: %s", record.inspection_id, part.serial, INTERRUPTED)
+    return record

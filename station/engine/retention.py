@@ -11,6 +11,7 @@ from pathlib import Path
 from station.archive.age import BACK, Clock, Right
 from station.archive.prune import Pruned, clock_doubt, prune
 from station.archive.reader import Query, find
+from station.engine.check_ins import PRUNING_S, CheckIns
 from station.errors import RecordError
 from station.journal.journal import Kind, entries
 from station.journal.journal_writer import append
@@ -83,9 +84,11 @@ class Housekeeping:
         wall_s: Callable[[], float] = time.time,
         since_start_s: Callable[[], float] = _since_start_s,
         look_s: float = LOOK_S,
+        check_ins: CheckIns | None = None,
     ) -> None:
         """`wall_s` and `since_start_s` are the clock and the time since some start, in seconds."""
         self._folder, self._keep, self._look_s = folder, keep, look_s
+        self._check_ins = check_ins or CheckIns()
         self._wall_s, self._since_start_s = wall_s, since_start_s
         self._stop = threading.Event()
         self._doubt = ""
@@ -117,7 +120,8 @@ class Housekeeping:
 
     def _guarded(self, work: Callable[[], None]) -> bool:
         try:
-            work()
+            with self._check_ins.working("housekeeping", PRUNING_S):
+                work()
         except RecordError as error:
             log.error("%s", error)
         except Exception:  # the thread must survive: without it the disk fills up

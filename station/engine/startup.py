@@ -1,13 +1,11 @@
 """Starts the engine: opens everything that it needs and reports all failures at once."""
 
 import logging
-import signal
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack, closing
 from datetime import datetime
 from pathlib import Path
-from types import FrameType
 from typing import TypeVar
 
 from station.archive.reader import Query, find
@@ -17,25 +15,36 @@ from station.camera.reconnecting import ReconnectingCamera
 from station.channel.events import Event
 from station.channel.request_socket import RequestServer
 from station.channel.zeromq import Publisher
+from station.defects import Reason
 from station.domain import Purpose, Verdict
 from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog
+from station.engine.check_ins import DISK_S, WIRE_S, CheckIns
 from station.engine.cycle import Cycle
 from station.engine.listener import Listener
 from station.engine.operator_requests import OperatorRequests
 from station.engine.orders import OrderQueue
+from station.engine.recording import INTERRUPTED, record_interrupted
 from station.engine.retention import Housekeeping
 from station.engine.self_checks import Master, SelfChecks
+from station.engine.watchdog import StopSignals, Watchdog, nothing
 from station.errors import WeldgateError
 from station.inspection.loading import Loaded, prepare
+from station.journal.journal import Kind
+from station.journal.journal_writer import append
 from station.plc.bus_log import BusLog
 from station.plc.line import make_line
+from station.plc.map.alarms import ENGINE_HUNG
+from station.plc.map.registers import ERROR_NOT_JUDGED
 from station.plc.port import Line
 from station.settings import adjustments
 from station.settings.file import load
 from station.settings.model import Settings
 
 log = logging.getLogger("weldgate")
+
+PART_GRACE_S = 10.0
+"""Time that a part may take beyond grab, deadline and the wait for the PLC before the cycle hangs."""
 
 Opened = TypeVar("Opened")
 
@@ -50,6 +59,7 @@ def make_cycle(
     alarm_log: AlarmLog,
     active: ActiveSettings | None = None,
     clock_in_doubt: Callable[[], bool] = lambda: False,
+    check_ins: CheckIns | None = None,
 ) -> Cycle:
     """Return the cycle that the settings describe; `active`: active settings that others may change."""
     golden = settings.golden
@@ -72,6 +82,8 @@ def make_cycle(
         listener=listener,
         alarm_log=alarm_log,
         clock_in_doubt=clock_in_doubt,
+        check_ins=check_ins,
+        part_s=settings.camera.grab_s + 2 * settings.plc.deadline_ms / 1000 + PART_GRACE_S,
     )
 
 
@@ -85,18 +97,16 @@ def _master(folder: Path, serial: str, expected: Verdict) -> Master:
     )
 
 
-def run_engine(path: Path) -> None:
-    """Run the engine until SIGINT or SIGTERM. Raises WeldgateError that names everything that failed."""
+def run_engine(path: Path, at_end: Callable[[], None] = nothing) -> None:
+    """Run the engine until SIGINT or SIGTERM. Raises WeldgateError that names everything that failed.
+
+    `at_end` is called before the engine ends itself because a thread hangs.
+    """
     settings = load(path)
-    stop = threading.Event()
-
-    def on_signal(_number: int, _frame: FrameType | None) -> None:
-        stop.set()
-
-    signal.signal(signal.SIGINT, on_signal)
-    signal.signal(signal.SIGTERM, on_signal)
+    stop, check_ins = threading.Event(), CheckIns()
 
     with ExitStack() as stack:
+        stack.enter_context(StopSignals(stop, at_end))
         problems: list[str] = []
 
         def attempt(make: Callable[[], Opened]) -> Opened | None:
@@ -112,7 +122,13 @@ def run_engine(path: Path) -> None:
         bus = (
             attempt(
                 lambda: stack.enter_context(
-                    closing(BusLog(settings.archive.folder, settings.archive.bus_days))
+                    closing(
+                        BusLog(
+                            settings.archive.folder,
+                            settings.archive.bus_days,
+                            lambda: check_ins.working("bus", DISK_S),
+                        )
+                    )
                 )
             )
             if archive
@@ -121,7 +137,7 @@ def run_engine(path: Path) -> None:
         keeper = None
         if archive:
             keeper = stack.enter_context(
-                closing(Housekeeping(settings.archive.folder, settings.archive.keep))
+                closing(Housekeeping(settings.archive.folder, settings.archive.keep, check_ins=check_ins))
             )
         server = attempt(lambda: stack.enter_context(closing(RequestServer(settings.channel))))
         if (
@@ -133,7 +149,8 @@ def run_engine(path: Path) -> None:
             or server is None
         ):
             raise WeldgateError("; ".join(problems))
-        line = make_line(settings.plc, bus)
+        line = make_line(settings.plc, bus, lambda: check_ins.expect("plc", WIRE_S))
+        stack.callback(check_ins.rest, "plc")
         stack.callback(line.stop)
         line.start()
         for change in adjustments.words(path):
@@ -144,9 +161,14 @@ def run_engine(path: Path) -> None:
             settings.plc.mode,
             line.port,
         )
-        alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder)))
+        alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder, check_ins)))
+        if (interrupted := record_interrupted(archive, loaded.provenance)) is not None:
+            code = ERROR_NOT_JUDGED + Reason.INTERNAL.code
+            alarm_log.add_event(code, f"part {interrupted.inspection_id}, {INTERRUPTED}")
         active, orders = ActiveSettings(settings, lambda: load(path), make_camera), OrderQueue()
-        requests = stack.enter_context(closing(OperatorRequests(server, path, active, orders.put)))
+        requests = stack.enter_context(
+            closing(OperatorRequests(server, path, active, orders.put, check_ins=check_ins))
+        )
 
         def on_event(event: Event) -> None:
             publisher.send(event)
@@ -161,5 +183,13 @@ def run_engine(path: Path) -> None:
             alarm_log=alarm_log,
             active=active,
             clock_in_doubt=lambda: keeper is not None and keeper.clock_in_doubt,
+            check_ins=check_ins,
         )
+
+        def last_steps() -> None:
+            at_end()
+            cycle.note_unserved()
+            append(settings.archive.folder, Kind.ALARM, "station", f"16#{ENGINE_HUNG:04X}")
+
+        stack.enter_context(closing(Watchdog(check_ins, last_steps)))
         cycle.run(stop)

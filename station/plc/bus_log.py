@@ -5,7 +5,8 @@ import logging
 import os
 import queue
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -119,9 +120,14 @@ def _station_note(flag: Status, on: bool, rising: Control, after: Values) -> str
 class BusLog:
     """Writes the changes of both windows, in its own thread so that no disk delays the handshake."""
 
-    def __init__(self, folder: Path, days: int) -> None:
-        """Files older than `days` are deleted. Raises RecordError if the folder cannot be used."""
-        self._folder, self._days = folder, days
+    def __init__(
+        self, folder: Path, days: int, working: Callable[[], AbstractContextManager[None]] = nullcontext
+    ) -> None:
+        """Files older than `days` are deleted; each writing is a context of `working`.
+
+        Raises RecordError if the folder cannot be used.
+        """
+        self._folder, self._days, self._working = folder, days, working
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -161,7 +167,8 @@ class BusLog:
             waiting = [edge for edge in batch if edge is not None]
             try:
                 if waiting:
-                    self._write(waiting)
+                    with self._working():
+                        self._write(waiting)
             except OSError as error:
                 self._left_out += len(waiting)
                 log.error(

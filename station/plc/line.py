@@ -46,9 +46,12 @@ Offer = tuple[Result, "Future[bool]"]
 """Result offered for publication, and the future that learns whether the PLC could read it."""
 Bus = Callable[[float, dict[str, Value], dict[str, Value]], None]
 """Function called after every step with the epoch time, the command window and the status window."""
+NO_BUS: Bus = lambda _time, _command, _status: None  # noqa: E731
 
 
-def make_line(settings: PlcSettings, bus: Bus = lambda _time, _command, _status: None) -> "ModbusLine":
+def make_line(
+    settings: PlcSettings, bus: Bus = NO_BUS, alive: Callable[[], None] = lambda: None
+) -> "ModbusLine":
     """Return the line that the settings describe, not yet started. Raises SettingsError."""
     times = Times(
         deadline_s=settings.deadline_ms / 1000,
@@ -56,14 +59,17 @@ def make_line(settings: PlcSettings, bus: Bus = lambda _time, _command, _status:
         stuck_s=settings.stuck_ms / 1000,
         plc_heartbeat_s=settings.plc_heartbeat_ms / 1000,
     )
-    return ModbusLine(make_wire(settings), times, bus)
+    return ModbusLine(make_wire(settings), times, bus, alive)
 
 
 class ModbusLine:
     """The station's side of the handshake, over Modbus."""
 
-    def __init__(self, wire: Wire, times: Times, bus: Bus = lambda _time, _command, _status: None) -> None:
-        self._wire, self._times, self._bus = wire, times, bus
+    def __init__(
+        self, wire: Wire, times: Times, bus: Bus = NO_BUS, alive: Callable[[], None] = lambda: None
+    ) -> None:
+        """`alive` is called before every step: the thread does not hang."""
+        self._wire, self._times, self._bus, self._alive = wire, times, bus, alive
         self._requests: queue.SimpleQueue[Trigger | Command] = queue.SimpleQueue()
         self._state = State()
         self._health = Health(ready=False, offline=Offline.STARTING, failure=False, config_crc=0)
@@ -186,6 +192,7 @@ class ModbusLine:
         started.set_result(None)
         try:
             while not self._stopping:
+                self._alive()
                 self._wake.clear()
                 while await self._step():
                     pass
@@ -208,10 +215,8 @@ class ModbusLine:
         grace_s = min(self._times.plc_heartbeat_s or GRACE_S, GRACE_S)
         if self._lost_s is not None and not link and now_s - self._lost_s < grace_s:
             return False
-        offered, self._offered = (
-            self._offered,
-            None,
-        )  # taken once: the cycle may offer the next one at any time
+        # taken once: the cycle may offer the next one at any time
+        offered, self._offered = self._offered, None
         inputs = self._inputs(now_s, link, None if offered is None else offered[0])
         outcome = step(self._state, inputs, now_s, self._times)
         self._count(outcome.state)

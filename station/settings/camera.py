@@ -32,6 +32,11 @@ class CameraSettings(Section):
         return None
 
     @property
+    def grab_s(self) -> float:
+        """Longest time that a grab takes if the camera works."""
+        return 0.0
+
+    @property
     def adjustable(self) -> tuple[float, float] | None:
         """Exposure in µs and gain in dB if `exposure_us` and `gain_db` can be adjusted, else None."""
         return None
@@ -70,6 +75,11 @@ class PylonSettings(CameraSettings):
     def size_px(self) -> tuple[int, int] | None:
         """Width and height of the images."""
         return self.width_px, self.height_px
+
+    @property
+    def grab_s(self) -> float:
+        """Longest time that a grab takes: until the camera is ready, and until the frame comes."""
+        return 2 * self.timeout_ms / 1000
 
     @property
     def adjustable(self) -> tuple[float, float] | None:

@@ -510,6 +510,14 @@
         <translation>Uhr richtig stellen, dann angeben, welche Zeiten stimmen: weldgate records clock</translation>
     </message>
     <message>
+        <source>the engine hung and ended itself</source>
+        <translation>Engine hing und hat sich beendet</translation>
+    </message>
+    <message>
+        <source>see the engine&apos;s log for what hung; check camera, disk and network cards</source>
+        <translation>Protokoll der Engine zeigt, was hing; Kamera, Platte und Netzwerkkarten prüfen</translation>
+    </message>
+    <message>
         <source>check the program of the line</source>
         <translation>Programm der Linie prüfen</translation>
     </message>

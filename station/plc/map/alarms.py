@@ -29,6 +29,10 @@ class Alarm(IntEnum):
     CLOCK_IN_DOUBT = 0x300A
 
 
+ENGINE_HUNG = 0x300B
+"""Code in the journal of an engine that ended itself; ERROR_CODE never shows it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Explained:
     """Explanation of an alarm code for the operator."""
@@ -65,6 +69,10 @@ TEXTS: dict[int, Explained] = {
     Alarm.CLOCK_IN_DOUBT: Explained(
         "the clock jumped: no old records are deleted",
         "set the clock right, then say which dates are right: weldgate records clock",
+    ),
+    ENGINE_HUNG: Explained(
+        "the engine hung and ended itself",
+        "see the engine's log for what hung; check camera, disk and network cards",
     ),
     ERROR_DEADLINE: Explained(
         "no result within the deadline", "see cycle times on the page Statistics; check the PC's load"
