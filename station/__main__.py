@@ -212,7 +212,7 @@ def _replay(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from station.cli.check import check
+    from station.cli.check import check, switched_off
     from station.errors import SettingsError
     from station.settings.adjustments import words
 
@@ -221,6 +221,8 @@ def _check(arguments: argparse.Namespace) -> int:
         print(f"{'ok  ' if problem is None else 'BAD '} {name}{'' if problem is None else ': ' + problem}")
         problems += problem is not None
     with suppress(SettingsError):  # reported above
+        for off in switched_off(arguments.settings):
+            print(f"off  {off}")
         for change in words(arguments.settings):
             print(f"note changed at the station, overrides {arguments.settings.name}: {change}")
     return 1 if problems else 0

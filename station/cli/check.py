@@ -3,7 +3,7 @@
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 from station.archive.room import Room
@@ -11,7 +11,7 @@ from station.archive.writer import Archive
 from station.camera.choose import make_camera
 from station.domain import TRAINED_UM_PER_PX
 from station.errors import WeldgateError
-from station.inspection.loading import prepare
+from station.inspection.loading import OWN_FRAME, prepare
 from station.plc.line import make_line
 from station.plc.wire.access import open_to_all
 from station.settings.file import load
@@ -38,6 +38,25 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
     plc = settings.plc
     if plc.mode == "server" and (said := open_to_all(plc.host, plc.allow)):
         yield said, None
+
+
+def switched_off(path: Path) -> list[str]:
+    """Return the checks of the station itself that are off, with what to set. Raises SettingsError."""
+    settings = load(path)
+    off = []
+    for number in sorted({1, *settings.recipes}):
+        with suppress(WeldgateError):  # reported as a problem
+            if prepare(settings, number).self_test is None:
+                off.append(
+                    f"self-test of recipe {number}: the shipped frame does not fit the weld; {OWN_FRAME}"
+                )
+    if not settings.golden.masters:
+        off.append("master check: no masters; name them under [golden.masters]")
+    elif settings.golden.due_h is None:
+        off.append("masters are never due; set golden.due_h")
+    if settings.model.reference_path is None:
+        off.append("drift is not monitored; set model.reference_path (weldgate-models first-day writes it)")
+    return off
 
 
 def _scale(settings: Settings) -> str:

@@ -97,6 +97,7 @@ class Cycle:
                 request = self._line.next_request(WAIT_S)
                 if isinstance(request, Trigger):
                     self._serve(request)
+                    self._self_checks.run_between_parts()
                 elif isinstance(request, Command):
                     self._line.command_done(request, self._load_recipe(request))
                 elif not self._carry_out_order():

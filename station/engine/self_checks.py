@@ -37,10 +37,21 @@ class SelfChecks:
     """Results of the self-checks; they decide whether the station's verdicts can be trusted."""
 
     def __init__(
-        self, loaded: Loaded, masters: Mapping[str, Master], due_s: float | None, self_test_s: float
+        self,
+        loaded: Loaded,
+        masters: Mapping[str, Master],
+        due_s: float | None,
+        self_test_s: float,
+        *,
+        self_test_age_s: float = float("inf"),
     ) -> None:
-        """`masters`: by serial; `due_s`: interval of checks; `self_test_s`: idle time between self-tests."""
-        self._masters, self._due_s, self._self_test_s = dict(masters), due_s, self_test_s
+        """`masters`: by serial; `due_s`: interval of checks.
+
+        `self_test_s`: time between self-tests while no part comes; `self_test_age_s`: highest age of the last
+        one between two parts.
+        """
+        self._masters, self._due_s = dict(masters), due_s
+        self._self_test_s, self._self_test_age_s = self_test_s, self_test_age_s
         self._crc = loaded.provenance.config_crc
         self.use(loaded)
 
@@ -52,7 +63,7 @@ class SelfChecks:
         """Drift after the last judged part; None if it is not monitored."""
         self._self_test = loaded.self_test
         self.self_test_failed = False
-        self._tested_s = time.monotonic()
+        self._tested_s = self._judged_s = time.monotonic()
         crc = loaded.provenance.config_crc
         if crc != self._crc:  # right by other limits proves nothing, wrong stays wrong
             self._masters = {
@@ -85,7 +96,7 @@ class SelfChecks:
 
     def part_judged(self, inspection: Inspection) -> None:
         """Follow the drift by a part that was judged."""
-        self._tested_s = time.monotonic()
+        self._judged_s = time.monotonic()
         if self._drift_watch is None or not inspection.look:
             return
         before, self.drift = self.drifting, self._drift_watch.part(np.array(inspection.look))
@@ -118,7 +129,16 @@ class SelfChecks:
     def run_when_idle(self) -> None:
         """Run the self-test if it is time; call only while no part is there."""
         wait_s = RETEST_S if self.self_test_failed else self._self_test_s
-        if self._self_test is None or time.monotonic() - self._tested_s < wait_s:
+        if time.monotonic() - max(self._tested_s, self._judged_s) >= wait_s:
+            self._run_self_test()
+
+    def run_between_parts(self) -> None:
+        """Run the self-test if the last one is too old; call after each part."""
+        if time.monotonic() - self._tested_s >= self._self_test_age_s:
+            self._run_self_test()
+
+    def _run_self_test(self) -> None:
+        if self._self_test is None:
             return
         try:
             failed = not self._self_test.passes()

@@ -78,6 +78,7 @@ def make_cycle(
             },
             None if golden.due_h is None else golden.due_h * 3600,
             settings.model.self_test_s,
+            self_test_age_s=settings.model.self_test_age_s,
         ),
         listener=listener,
         alarm_log=alarm_log,

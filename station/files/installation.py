@@ -12,6 +12,8 @@ ROOMS_FOLDER = Path(__file__).resolve().parents[2]
 """Folder that contains station, synth, models and deploy: the checkout, or the installed package."""
 SHIPPED_NETWORKS = ROOMS_FOLDER / "models" / "shipped"
 """Folder of the networks that are shipped with weldgate."""
+SHIPPED_GOOD_FRAME = ROOMS_FOLDER / "deploy" / "frames" / "part_03000055.png"
+"""Frame of a good part, rendered for the default weld and scale."""
 
 
 def room_command(room: str) -> list[str]:

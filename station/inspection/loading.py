@@ -8,13 +8,18 @@ from dataclasses import dataclass, replace
 from station import __version__
 from station.classify.thresholds import Thresholds
 from station.defects import KINDS
+from station.errors import ImageError, ModelError
+from station.files.installation import SHIPPED_GOOD_FRAME
 from station.inspection.inspector import Inspector
 from station.inspection.networks import load_networks
 from station.inspection.self_test import SelfTest
 from station.records import Provenance
-from station.settings.model import Settings, for_recipe
+from station.settings.model import ModelSettings, Settings, for_recipe
 
 log = logging.getLogger("weldgate.loading")
+
+OWN_FRAME = "set model.self_test_path to a frame of an own good part"
+"""What to do if the shipped frame does not fit the weld."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +43,18 @@ def prepare(settings: Settings, number: int) -> Loaded:
             chosen.model.path,
             ", ".join(unknown),
         )
-    path = chosen.model.self_test_path
-    return Loaded(
-        number,
-        inspector,
-        provenance,
-        None if path is None else SelfTest(inspector, path, str(chosen.model.self_test_verdict)),
-    )
+    return Loaded(number, inspector, provenance, _self_test(inspector, chosen.model))
+
+
+def _self_test(inspector: Inspector, model: ModelSettings) -> SelfTest | None:
+    """Return the self-test on the frame of the settings or, without one, on a shipped frame if that fits."""
+    if model.self_test_path is not None:
+        return SelfTest(inspector, model.self_test_path, str(model.self_test_verdict))
+    try:
+        return SelfTest(inspector, SHIPPED_GOOD_FRAME)
+    except (ImageError, ModelError) as error:
+        log.warning("there is no self-test: %s; %s", error, OWN_FRAME)
+        return None
 
 
 def load_inspector(settings: Settings) -> tuple[Inspector, Provenance]:

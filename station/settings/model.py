@@ -61,11 +61,16 @@ class ModelSettings(Section):
     """File with the appearance of the line's own good parts; None: drift is not monitored."""
     threads: int = Field(default=2, ge=1, le=64)
     self_test_path: FilePath | None = None
-    """Frame of the self-test, judged at the start and while idle; its scores must never change."""
+    """Frame of the self-test, judged at the start and between parts; its scores must never change.
+
+    None: a shipped frame, if it fits the weld.
+    """
     self_test_verdict: Literal["OK", "NOK"] | None = None
     """Verdict that the self-test must give at the start."""
     self_test_s: float = Field(default=10.0, ge=0.5, le=3600)
-    """Idle time between two self-tests, in seconds."""
+    """Time between two self-tests while no part comes, in seconds."""
+    self_test_age_s: float = Field(default=300.0, ge=0.5, le=86_400)
+    """Age of the last self-test at which it is run between two parts, however busy the line is."""
     novel: Literal["error", "flag"] = "error"
     """A part that would be OK but is unlike all training images: not judged (error), or OK with the flag
     NOVEL (flag)."""
