@@ -7,6 +7,7 @@ from station.camera.port import Camera
 from station.errors import SettingsError
 from station.inspection.loading import Loaded, prepare
 from station.settings.camera import AnyCamera
+from station.settings.differences import need_restart
 from station.settings.model import Settings, for_recipe
 from station.settings.section import Section
 
@@ -51,6 +52,11 @@ class ActiveSettings:
         camera = None
         if new.camera.identity != self._settings.camera.identity:
             raise SettingsError("the camera cannot be exchanged while the station runs; restart the station")
+        if fixed := need_restart(self._settings, new):
+            raise SettingsError(
+                f"{', '.join(fixed)}: changed in the settings file, and used only after a restart. "
+                "Restart the station, or set the previous value; nothing was changed."
+            )
         known = {1, *self._settings.recipes}
         for other in sorted({1, *new.recipes} - {number}):
             if other not in known or _judging(new, other) != _judging(self._settings, other):

@@ -66,6 +66,7 @@ class Cycle:
         self._listener = listener
         self._orders = OperatorOrders()
         self._settings_refused = False
+        self._reload_refusal = ""
         self._status = StatusReport(
             camera=camera,
             origin=origin,
@@ -129,8 +130,9 @@ class Cycle:
         status = self._line.state().status
         task, setup = self._orders.next_task(status), self._orders.service.setup_images
         if isinstance(task, Reload):
+            self._reload_refusal = RELOAD_REFUSED
             self._guarded(self._reload, "the settings file was not read again")
-            task.ticket.answer(RELOAD_REFUSED if self._settings_refused else "")
+            task.ticket.answer(self._reload_refusal if self._settings_refused else "")
         elif isinstance(task, UseSettings):
             work = partial(
                 use_settings,
@@ -162,6 +164,7 @@ class Cycle:
             prepared = self._active.prepare_file(self._loaded.number)
         except WeldgateError as error:
             log.error("changed settings are not used: %s", error)
+            self._reload_refusal = str(error)
             return
         if prepared.camera is None or self._camera.replace(prepared.camera):
             self._settings_refused = False

@@ -20,6 +20,7 @@ from station.files.durable import stage, sync_folder
 from station.journal.journal import Kind, entries
 from station.journal.journal_writer import append
 from station.settings import adjustments
+from station.settings.differences import differences
 from station.settings.file import load
 from station.settings.model import Settings, for_recipe
 
@@ -62,6 +63,7 @@ class SettingsChange:
         if len(reason.strip()) < MIN_REASON:
             raise SettingsError("a reason is needed")
         settings, changes = self._active.settings, adjustments.read(self._path)
+        self._check_file()
         planned: list[tuple[str, str, str]] = []
         for value in values:
             _check(value)
@@ -87,6 +89,15 @@ class SettingsChange:
                         reason=f"refused: {why}",
                     )
             raise
+
+    def _check_file(self) -> None:
+        """Raise SettingsError if the file was edited since it was read: a change would take that over."""
+        edited = differences(self._active.settings, load(self._path))
+        if edited:
+            raise SettingsError(
+                f"{', '.join(edited)}: edited in the settings file and not in use yet. Reload settings "
+                "first, or restart the station; nothing was changed."
+            )
 
     def _use(self, changes: dict[str, object]) -> None:
         changes = json.loads(json.dumps(changes))  # as a start reads them
