@@ -126,6 +126,11 @@ def _parser() -> argparse.ArgumentParser:
         "check settings, models, archive, camera and PLC; report what is wrong and what to do",
     )
     add("commission", _commission, "make a code by which the first administrator can log in")
+    add(
+        "new-archive",
+        _new_archive,
+        "let a new archive begin, or another one be used: the next start takes archive.folder as it is",
+    )
     about = "list, verify, prune, export and report the records of an archive"
     add_commands(commands.add_parser("records", help=about, description=_sentence(about)))
     registers = add(
@@ -232,6 +237,18 @@ def _commission(arguments: argparse.Namespace) -> int:
     from station.cli.commission import commission
 
     return commission(arguments.settings)
+
+
+def _new_archive(arguments: argparse.Namespace) -> int:
+    from station.engine.archive_identity import forget_archive
+    from station.settings.file import load
+
+    folder = load(arguments.settings).archive.folder
+    aside = forget_archive(arguments.settings)
+    print(f"{folder}: the next start takes it as the archive of this station")
+    if aside is not None:
+        print(f"the note about the archive until now: {aside}")
+    return 0
 
 
 def _registers(arguments: argparse.Namespace) -> int:

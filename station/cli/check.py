@@ -10,6 +10,7 @@ from station.archive.room import Room
 from station.archive.writer import Archive
 from station.camera.choose import make_camera
 from station.domain import TRAINED_UM_PER_PX
+from station.engine.archive_identity import check_archive
 from station.errors import WeldgateError
 from station.inspection.loading import OWN_FRAME, prepare
 from station.plc.line import make_line
@@ -30,6 +31,8 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
     yield _scale(settings), None
     for name, probe in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC", _plc)):
         try:
+            if probe is _archive:
+                check_archive(path, settings.archive.folder)
             probe(settings)
         except WeldgateError as error:
             yield name, str(error)

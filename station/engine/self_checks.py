@@ -32,6 +32,10 @@ class Master:
         """True if its last check gave another verdict than expected."""
         return self.found not in (None, self.expected)
 
+    def by_other_judge(self) -> "Master":
+        """Return what a check proves to other software, networks or limits: right nothing, wrong all."""
+        return self if self.wrong else Master(self.expected)
+
 
 class SelfChecks:
     """Results of the self-checks; they decide whether the station's verdicts can be trusted."""
@@ -52,7 +56,7 @@ class SelfChecks:
         """
         self._masters, self._due_s = dict(masters), due_s
         self._self_test_s, self._self_test_age_s = self_test_s, self_test_age_s
-        self._crc = loaded.provenance.config_crc
+        self._judge = loaded.provenance
         self.use(loaded)
 
     def use(self, loaded: Loaded) -> None:
@@ -64,13 +68,9 @@ class SelfChecks:
         self._self_test = loaded.self_test
         self.self_test_failed = False
         self._tested_s = self._judged_s = time.monotonic()
-        crc = loaded.provenance.config_crc
-        if crc != self._crc:  # right by other limits proves nothing, wrong stays wrong
-            self._masters = {
-                serial: master if master.wrong else Master(master.expected)
-                for serial, master in self._masters.items()
-            }
-        self._crc = crc
+        if loaded.provenance != self._judge:
+            self._masters = {serial: master.by_other_judge() for serial, master in self._masters.items()}
+        self._judge = loaded.provenance
 
     @property
     def drifting(self) -> bool:

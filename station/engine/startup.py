@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TypeVar
 
-from station.archive.reader import Query, find
+from station.archive.reader import Query, find, read_words
 from station.archive.writer import Archive
 from station.camera.choose import make_camera
 from station.camera.reconnecting import ReconnectingCamera
@@ -19,6 +19,7 @@ from station.defects import Reason
 from station.domain import Purpose, Verdict
 from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog
+from station.engine.archive_identity import check_archive, note_archive
 from station.engine.check_ins import DISK_S, WIRE_S, CheckIns
 from station.engine.cycle import Cycle
 from station.engine.listener import Listener
@@ -28,7 +29,7 @@ from station.engine.recording import INTERRUPTED, record_interrupted
 from station.engine.retention import Housekeeping
 from station.engine.self_checks import Master, SelfChecks
 from station.engine.watchdog import StopSignals, Watchdog, nothing
-from station.errors import WeldgateError
+from station.errors import RecordError, WeldgateError
 from station.inspection.loading import Loaded, prepare
 from station.journal.journal import Kind
 from station.journal.journal_writer import append
@@ -37,6 +38,7 @@ from station.plc.line import make_line
 from station.plc.map.alarms import ENGINE_HUNG
 from station.plc.map.registers import ERROR_NOT_JUDGED
 from station.plc.port import Line
+from station.records import Provenance
 from station.settings import adjustments
 from station.settings.file import load
 from station.settings.model import Settings
@@ -73,7 +75,7 @@ def make_cycle(
         self_checks=SelfChecks(
             loaded,
             {
-                serial: _master(settings.archive.folder, serial, Verdict(found))
+                serial: _master(settings.archive.folder, serial, Verdict(found), loaded.provenance)
                 for serial, found in golden.masters.items()
             },
             None if golden.due_h is None else golden.due_h * 3600,
@@ -88,14 +90,27 @@ def make_cycle(
     )
 
 
-def _master(folder: Path, serial: str, expected: Verdict) -> Master:
-    """Return a master with its last check before this start."""
+def _master(folder: Path, serial: str, expected: Verdict, judge: Provenance) -> Master:
+    """Return a master with its last check before this start; one that `judge` did not make proves nothing."""
     checks = find(folder, Query(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=1))
     if not checks:
         return Master(expected)
-    return Master(
-        expected, Verdict(checks[0].verdict), datetime.fromisoformat(checks[0].grabbed_at).timestamp()
-    )
+    checked_s = datetime.fromisoformat(checks[0].grabbed_at).timestamp()
+    master = Master(expected, Verdict(checks[0].verdict), checked_s)
+    record, _problem = read_words(folder, checks[0])
+    return master if record is not None and record.provenance == judge else master.by_other_judge()
+
+
+def _archive(path: Path, settings: Settings) -> Archive:
+    """Open the archive of this station. Raises RecordError, also if it is not the one that it was."""
+    check_archive(path, settings.archive.folder)
+    archive = Archive(settings.archive)
+    try:
+        note_archive(path, settings.archive.folder)
+    except RecordError:
+        archive.close()
+        raise
+    return archive
 
 
 def run_engine(path: Path, at_end: Callable[[], None] = nothing) -> None:
@@ -119,7 +134,7 @@ def run_engine(path: Path, at_end: Callable[[], None] = nothing) -> None:
 
         loaded = attempt(lambda: prepare(settings, 1))
         publisher = attempt(lambda: stack.enter_context(closing(Publisher(settings.channel))))
-        archive = attempt(lambda: stack.enter_context(closing(Archive(settings.archive)))) if loaded else None
+        archive = attempt(lambda: stack.enter_context(closing(_archive(path, settings)))) if loaded else None
         bus = (
             attempt(
                 lambda: stack.enter_context(

@@ -167,7 +167,7 @@ def parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser
 
 def test_every_command_and_option_is_explained_and_the_old_one_is_hidden() -> None:
     found = list(parsers(_parser()))
-    assert len(found) == 18
+    assert len(found) == 19
     for parser in found:
         assert re.fullmatch(r"[A-Z].*\.", parser.description or ""), parser.prog
         for action in parser._actions:
