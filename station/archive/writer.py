@@ -11,6 +11,7 @@ from pathlib import Path
 
 from station.archive.cameras import CameraFeatures
 from station.archive.in_progress import InProgress, announce, announced, done
+from station.archive.recovery import clear_the_way, move_aside
 from station.archive.room import Disk, Room
 from station.archive.schema import NAME, SEARCHABLE_SCORE, last_link, link, open_index
 from station.domain import Frame, Inspection, Verdict
@@ -68,33 +69,21 @@ class Archive:
         except OSError as error:
             raise self._unusable(error) from None
         try:
-            for left in self._folder.glob(f"{INCOMING}*"):
-                left.unlink()
+            for left in sorted(self._folder.glob(f"{INCOMING}*")):
+                move_aside(self._folder, left)
             self._index = open_index(self._folder)
             self._following = self._next_id()
             """Number of the next record."""
             self.interrupted = self._interrupted()
             """Part that was being inspected when the engine ended, and has no record."""
             self._chain = last_link(self._index)
-            self._guard()
+            clear_the_way(self._folder, self._following)
         except (OSError, sqlite3.Error, UnicodeError, RecordError) as error:
             if hasattr(self, "_index"):
                 self._index.close()
             self._lock.release()
             raise error if isinstance(error, RecordError) else self._unusable(error) from None
         self._encoder = ThreadPoolExecutor(1, "encode")
-
-    def _guard(self) -> None:
-        """Raise RecordError if the index is older than the files: their numbers would be used again."""
-        days = sorted(self._folder.glob("????-??-??"))[-3:]
-        numbers = [int(path.stem) for day in days for path in day.glob("*.json") if path.stem.isdecimal()]
-        if (
-            max(numbers, default=0) > self._next_id()
-        ):  # the next one may be left over from an interrupted part
-            raise RecordError(
-                f"{self._folder}: has record {max(numbers)}, but its index ends at {self._next_id() - 1}; "
-                "restore index.sqlite, or set another archive.folder"
-            )
 
     def _interrupted(self) -> Part | None:
         found = announced(self._folder)
@@ -194,8 +183,9 @@ class Archive:
         if not day.exists():
             day.mkdir()
             sync_folder(self._folder)
-        for suffix in ("png", "json"):  # left over from an interrupted part
-            (day / f"{inspection_id:08d}.{suffix}").unlink(missing_ok=True)
+        for suffix in ("png", "json"):  # left over from a part whose record failed
+            if (left := day / f"{inspection_id:08d}.{suffix}").exists():
+                move_aside(self._folder, left)
         frame_file = sha256 = camera_sha256 = None
         state = "none" if pending.frame is None else "kept"
         if pending.stored is not None:
