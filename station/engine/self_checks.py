@@ -57,16 +57,17 @@ class SelfChecks:
         self._masters, self._due_s = dict(masters), due_s
         self._self_test_s, self._self_test_age_s = self_test_s, self_test_age_s
         self._judge = loaded.provenance
+        self.self_test_failed = False
+        """True from a self-test that failed to the next one that passes, by whatever recipe."""
         self.use(loaded)
 
     def use(self, loaded: Loaded) -> None:
-        """Check by another recipe from now on."""
+        """Check by another recipe from now on. That does not make good a self-test that failed."""
         reference = loaded.inspector.reference
         self._drift_watch = None if reference is None else DriftWatch(reference)
         self.drift: Drift | None = None
         """Drift after the last judged part; None if it is not monitored."""
         self._self_test = loaded.self_test
-        self.self_test_failed = False
         self._tested_s = self._judged_s = time.monotonic()
         if loaded.provenance != self._judge:
             self._masters = {serial: master.by_other_judge() for serial, master in self._masters.items()}

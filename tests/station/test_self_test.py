@@ -86,3 +86,20 @@ def test_on_a_busy_line_it_runs_between_parts_at_its_age(monkeypatch: pytest.Mon
     now[0] += 1
     checks.run_when_idle()
     assert checks.trusted
+
+
+@pytest.mark.parametrize("has_self_test", [True, False])
+def test_another_recipe_does_not_make_good_a_self_test_that_failed(has_self_test: bool) -> None:
+    stored, inspector = Stored(), SimpleNamespace(reference=None)
+    stored.right = False
+    loaded = Loaded(1, inspector, provenance(), stored)  # type: ignore[arg-type]
+    checks = SelfChecks(loaded, {}, None, 10.0, self_test_age_s=0.0)
+    checks.run_between_parts()
+    assert not checks.trusted
+
+    other = Stored()
+    checks.use(Loaded(2, inspector, provenance(), other if has_self_test else None))  # type: ignore[arg-type]
+    assert not checks.trusted
+    checks.run_between_parts()
+    assert checks.trusted == has_self_test
+    assert other.runs == int(has_self_test)
