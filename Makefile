@@ -7,7 +7,7 @@ OUTSIDE := tests/plc/npm
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
 .PHONY: help setup demo test lint bench chaos-plc chaos-covers chaos-records chaos-panel soak-panel
-.PHONY: networks screenshots translations docs registers clean
+.PHONY: networks screenshots translations docs registers bundle clean
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -79,6 +79,9 @@ registers: $(VENV)/.demo ## write the register map and the PLC block in all form
 	$(BIN)/weldgate registers --format st > deploy/plc/weldgate.st
 	$(BIN)/weldgate registers --format scl > deploy/plc/weldgate.scl
 	$(BIN)/weldgate registers --format symbols > deploy/plc/weldgate_symbols.csv
+
+bundle: $(VENV)/.demo ## build the offline bundle of the line PC and its Debian package in build/
+	$(BIN)/python -m deploy.bundle --deb
 
 clean: ## remove the virtual environment
 	rm -rf $(VENV)

@@ -27,7 +27,7 @@ ELSEWHERE = {
 }
 """Pages that lie elsewhere in the repository, because tools or people look for them there."""
 NAVIGATION = (
-    ("Begin", ("tutorial", "window", "commands", "glossary")),
+    ("Begin", ("tutorial", "install", "window", "commands", "glossary")),
     ("Integrate", ("plc/index", "integrator", "plc/block", "plc/register-map", "troubleshooting", "records")),
     ("Understand", ("architecture", "rooms", "decisions/index", "networks/classifier", "networks/ring")),
     ("Change", ("how-to/index", "contributing", "api/index", "changelog")),

@@ -99,6 +99,15 @@ def test_a_wheel_holds_one_package_with_every_file_of_the_rooms(wheel: Path) -> 
     expected |= {
         "models/evaluation/report.html.j2",
         "deploy/station.toml",
+        "deploy/records.md",
+        *(path.relative_to(ROOT).as_posix() for path in (ROOT / "deploy" / "bundle" / "files").iterdir()),
+        *(
+            path.relative_to(ROOT).as_posix()
+            for path in (ROOT / "deploy" / "plc").iterdir()
+            if path.is_file()
+        ),
+        *(path.relative_to(ROOT).as_posix() for path in (ROOT / "deploy" / "docs").glob("*.md")),
+        *(path.relative_to(ROOT).as_posix() for path in (ROOT / "deploy" / "docs" / "how-to").glob("*.md")),
         *(f"deploy/frames/{path.name}" for path in FRAMES.iterdir()),
     }
     own = {name for name in expected if name.startswith("deploy/package/weldgate/")}

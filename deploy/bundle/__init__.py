@@ -1,0 +1,1 @@
+"""Offline bundle of the line PC: packages with their hashes, and the scripts that install and remove them."""
