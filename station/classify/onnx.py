@@ -5,12 +5,12 @@ and is refused without them; a ring network is recognised by its input.
 """
 
 import hashlib
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import onnxruntime as ort
 from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
@@ -22,6 +22,10 @@ from station.errors import ModelError
 from station.numbers import Number
 from station.vision.marks import CELL_PX, CHANNELS, Marks
 from station.vision.reduced import FINDER_UM_PER_PX
+
+# before the import: else it writes an identifier of the machine to disk, and reports its use to its maker
+os.environ["ORT_DISABLE_TELEMETRY"] = "1"
+import onnxruntime as ort
 
 Array = NDArray[np.float64]
 

@@ -1,3 +1,6 @@
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -65,3 +68,11 @@ def test_foreign_metadata_is_refused(key: str, value: str, message: str, tmp_pat
     onnx.save(model, str(tmp_path / "odd.onnx"))
     with pytest.raises(ModelError, match=message):
         Classifier(tmp_path / "odd.onnx")
+
+
+def test_loading_a_network_leaves_no_identifier_of_the_machine(tmp_path: Path) -> None:
+    load = f"Classifier(Path({str(MODEL)!r}))"
+    code = f"from pathlib import Path; from station.classify.onnx import Classifier; {load}"
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("ORT_", "XDG_"))}
+    subprocess.run([sys.executable, "-c", code], env=environment | {"HOME": str(tmp_path)}, check=True)
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
