@@ -108,7 +108,7 @@ class PlcSettings(Section):
         if not isinstance(values, dict) or values.get("s7") is None:
             return values
         if values.get("mode") != "client":
-            raise ValueError('s7: only for mode = "client"; the station is no S7 PLC')
+            raise ValueError('s7: only for mode = "client"; the station does not act as an S7 PLC')
         beside = [name for name in ("tls", "preset", "command_function", "unit") if name in values]
         if beside:
             raise ValueError(f"{beside[0]}: only for Modbus; leave it out beside s7")
