@@ -50,23 +50,24 @@ class Listener(asyncio.BaseTransport):
         return self
 
     def close(self) -> None:
-        """Accept no more connections; each task closes its own socket."""
+        """Accept no more connections."""
         for task in self._tasks:
             task.cancel()
 
     async def wait_closed(self) -> None:
-        """Wait until the port is free."""
+        """Free the port; a task that was cancelled before it began would never close its socket."""
         await asyncio.gather(*self._tasks, return_exceptions=True)
+        for listening in self._sockets:
+            listening.close()
 
     async def _accept(self, listening: socket.socket) -> None:
-        with listening:
-            while True:
-                try:
-                    connection, address = await asyncio.get_running_loop().sock_accept(listening)
-                except OSError:
-                    await asyncio.sleep(PAUSE_S)
-                    continue
-                await self._take_in(connection, str(address[0]))
+        while True:
+            try:
+                connection, address = await asyncio.get_running_loop().sock_accept(listening)
+            except OSError:
+                await asyncio.sleep(PAUSE_S)
+                continue
+            await self._take_in(connection, str(address[0]))
 
     async def _take_in(self, connection: socket.socket, name: str) -> None:
         taken = False
