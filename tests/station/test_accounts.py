@@ -310,3 +310,27 @@ def test_a_code_that_root_makes_belongs_to_the_account_of_the_engine(tmp_path: P
             assert (place.stat().st_uid, place.stat().st_mode & 0o077) == (65534, 0)
     finally:
         archive.rmdir()
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
+@pytest.mark.parametrize("linked", ["folder", "file", "hard"])
+def test_root_gives_no_files_away_that_the_account_of_the_engine_has_linked(
+    tmp_path: Path, linked: str
+) -> None:
+    """The folder around the keys may belong to that account."""
+    path, secret = tmp_path / "station.toml", tmp_path / "etc" / "shadow"
+    path.write_text(f'{GOOD}[archive]\nfolder = "{tmp_path}/own"\n')
+    secret.parent.mkdir()
+    secret.write_text("secret")
+    archive, keys = load(path).archive.folder, keys_folder(path)
+    archive.mkdir(parents=True, exist_ok=True)
+    os.chown(archive, 65534, 65534)
+    if linked == "folder":
+        keys.symlink_to(secret.parent)
+    else:
+        keys.mkdir(mode=0o700)
+        make_link = os.symlink if linked == "file" else os.link
+        make_link(secret, keys / "shadow")
+    assert main(["commission", "-c", str(path)]) == (2 if linked == "folder" else 0)
+    assert secret.stat().st_uid == 0
+    assert [file.name for file in secret.parent.iterdir()] == ["shadow"]
