@@ -10,6 +10,7 @@ import numpy as np
 from station.classify.drift import Drift, DriftWatch
 from station.domain import Inspection, Verdict
 from station.inspection.loading import Loaded
+from station.records import Provenance
 
 log = logging.getLogger("weldgate.watch")
 
@@ -32,9 +33,9 @@ class Master:
         """True if its last check gave another verdict than expected."""
         return self.found not in (None, self.expected)
 
-    def by_other_judge(self) -> "Master":
-        """Return what a check proves to other software, networks or limits: right nothing, wrong all."""
-        return self if self.wrong else Master(self.expected)
+
+History = dict[tuple[str, Provenance], Master]
+"""Last check of each master, by its serial, by each judge."""
 
 
 class SelfChecks:
@@ -48,8 +49,9 @@ class SelfChecks:
         self_test_s: float,
         *,
         self_test_age_s: float = float("inf"),
+        history: History | None = None,
     ) -> None:
-        """`masters`: by serial; `due_s`: interval of checks.
+        """`masters`: by serial; `due_s`: interval of checks; `history`: checks before this start.
 
         `self_test_s`: time between self-tests while no part comes; `self_test_age_s`: highest age of the last
         one between two parts.
@@ -57,6 +59,7 @@ class SelfChecks:
         self._masters, self._due_s = dict(masters), due_s
         self._self_test_s, self._self_test_age_s = self_test_s, self_test_age_s
         self._judge = loaded.provenance
+        self._history: History = {} if history is None else dict(history)
         self.self_test_failed = False
         """True from a self-test that failed to the next one that passes, by whatever recipe."""
         self.use(loaded)
@@ -70,7 +73,12 @@ class SelfChecks:
         self._self_test = loaded.self_test
         self._tested_s = self._judged_s = time.monotonic()
         if loaded.provenance != self._judge:
-            self._masters = {serial: master.by_other_judge() for serial, master in self._masters.items()}
+            self._masters = {
+                serial: master
+                if master.wrong
+                else self._history.get((serial, loaded.provenance), Master(master.expected))
+                for serial, master in self._masters.items()
+            }
         self._judge = loaded.provenance
 
     @property
@@ -117,6 +125,7 @@ class SelfChecks:
             log.warning("master check: unknown master %r; add it under [golden.masters]", serial)
             return
         self._masters[serial] = Master(master.expected, found, time.time())
+        self._history[serial, self._judge] = self._masters[serial]
         if found is master.expected:
             log.info("master check: master %s was judged %s as expected", serial, found)
         else:

@@ -27,7 +27,7 @@ from station.engine.operator_requests import OperatorRequests
 from station.engine.orders import OrderQueue
 from station.engine.recording import INTERRUPTED, record_interrupted
 from station.engine.retention import Housekeeping
-from station.engine.self_checks import Master, SelfChecks
+from station.engine.self_checks import History, Master, SelfChecks
 from station.engine.watchdog import StopSignals, Watchdog, nothing
 from station.errors import RecordError, WeldgateError
 from station.inspection.loading import Loaded, prepare
@@ -47,6 +47,8 @@ log = logging.getLogger("weldgate")
 
 PART_GRACE_S = 10.0
 """Time that a part may take beyond grab, deadline and the wait for the PLC before the cycle hangs."""
+CHECKS_READ = 50
+"""Number of newest checks of each master that are read at the start."""
 
 Opened = TypeVar("Opened")
 
@@ -65,6 +67,10 @@ def make_cycle(
 ) -> Cycle:
     """Return the cycle that the settings describe; `active`: active settings that others may change."""
     golden = settings.golden
+    masters, history = dict[str, Master](), History()
+    for serial, found in golden.masters.items():
+        masters[serial], before = _master(settings.archive.folder, serial, Verdict(found), loaded.provenance)
+        history |= before
     return Cycle(
         camera=ReconnectingCamera(make_camera(settings.camera), settings.camera.reconnect_s),
         origin=settings.camera.origin,
@@ -74,13 +80,11 @@ def make_cycle(
         active=active or ActiveSettings(settings, lambda: settings, make_camera),
         self_checks=SelfChecks(
             loaded,
-            {
-                serial: _master(settings.archive.folder, serial, Verdict(found), loaded.provenance)
-                for serial, found in golden.masters.items()
-            },
+            masters,
             None if golden.due_h is None else golden.due_h * 3600,
             settings.model.self_test_s,
             self_test_age_s=settings.model.self_test_age_s,
+            history=history,
         ),
         listener=listener,
         alarm_log=alarm_log,
@@ -90,15 +94,22 @@ def make_cycle(
     )
 
 
-def _master(folder: Path, serial: str, expected: Verdict, judge: Provenance) -> Master:
-    """Return a master with its last check before this start; one that `judge` did not make proves nothing."""
-    checks = find(folder, Query(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=1))
-    if not checks:
-        return Master(expected)
-    checked_s = datetime.fromisoformat(checks[0].grabbed_at).timestamp()
-    master = Master(expected, Verdict(checks[0].verdict), checked_s)
-    record, _problem = read_words(folder, checks[0])
-    return master if record is not None and record.provenance == judge else master.by_other_judge()
+def _master(folder: Path, serial: str, expected: Verdict, judge: Provenance) -> tuple[Master, History]:
+    """Return a master as `judge` starts with it, and its last check before this start by each judge.
+
+    If the last of all was wrong, that counts; else only a check by `judge` itself proves something.
+    """
+    history: History = {}
+    newest = Master(expected)
+    query = Query(serial=serial, purpose=Purpose.GOLDEN, newest_first=True, limit=CHECKS_READ)
+    for row in reversed(find(folder, query)):
+        newest = Master(expected, Verdict(row.verdict), datetime.fromisoformat(row.grabbed_at).timestamp())
+        record, _problem = read_words(folder, row)
+        if record is not None:
+            history[serial, record.provenance] = newest
+    if newest.wrong:
+        return newest, history
+    return history.get((serial, judge), Master(expected)), history
 
 
 def _archive(path: Path, settings: Settings) -> Archive:

@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from shutil import copytree, rmtree
+from types import SimpleNamespace
 
 import pytest
 
@@ -13,9 +14,10 @@ from station.__main__ import main
 from station.archive.writer import Archive
 from station.domain import Origin, Purpose, Verdict
 from station.engine.archive_identity import MARKER, check_archive, note_archive, note_of
-from station.engine.self_checks import Master
+from station.engine.self_checks import Master, SelfChecks
 from station.engine.startup import _master
 from station.errors import RecordError
+from station.inspection.loading import Loaded
 from station.records import Part, Provenance
 from station.settings.model import ArchiveSettings
 from tests.parts import nok_inspection, ok_inspection, provenance
@@ -130,7 +132,43 @@ def test_a_master_that_another_judge_found_right_counts_as_unchecked_and_wrong_s
         found = ok_inspection() if right else nok_inspection()
         part = Part("M", 1, Origin.CAMERA, Purpose.GOLDEN)
         archive.commit(archive.begin(None), found, part, judge, now=datetime.now(UTC))
-    same = _master(tmp_path, "M", Verdict.OK, judge)
+    same, _ = _master(tmp_path, "M", Verdict.OK, judge)
     assert (same.wrong, same.found) == (not right, found.verdict)
-    changed = _master(tmp_path, "M", Verdict.OK, replace(judge, **{name: other}))  # type: ignore[arg-type]
+    judge_then = replace(judge, **{name: other})  # type: ignore[arg-type]
+    changed, _ = _master(tmp_path, "M", Verdict.OK, judge_then)
     assert changed == (Master(Verdict.OK) if right else same)
+
+
+def recipe(number: int) -> Loaded:
+    return Loaded(
+        number,
+        SimpleNamespace(reference=None),  # type: ignore[arg-type]
+        replace(provenance(), recipe=number),
+        None,
+    )
+
+
+@pytest.mark.parametrize("restarted", [False, True])
+def test_a_wrong_master_is_not_made_good_by_its_check_under_another_recipe(
+    tmp_path: Path, restarted: bool
+) -> None:
+    """Wrong by recipe 1, right by recipe 2, then recipe 1 again; what was right counts again."""
+    checks = SelfChecks(recipe(1), {"M": Master(Verdict.OK)}, 3600.0, 1e9)
+    with closing(Archive(ArchiveSettings(folder=tmp_path, min_free_mb=1, thin_free_mb=1))) as archive:
+        for number, found in ((1, nok_inspection()), (2, ok_inspection())):
+            part = Part("M", number, Origin.CAMERA, Purpose.GOLDEN)
+            judge = recipe(number).provenance
+            archive.commit(archive.begin(None), found, part, judge, now=datetime.now(UTC))
+            checks.use(recipe(number))
+            checks.master_judged("M", found.verdict)
+    assert checks.trusted
+    if restarted:
+        master, history = _master(tmp_path, "M", Verdict.OK, recipe(2).provenance)
+        checks = SelfChecks(recipe(2), {"M": master}, 3600.0, 1e9, history=history)
+    seen = []
+    for number in (3, 2, 1):
+        checks.use(recipe(number))
+        seen.append((checks.trusted, checks.masters_due))
+    assert seen == [(True, True), (True, False), (False, False)]
+    if restarted:
+        assert _master(tmp_path, "M", Verdict.OK, recipe(1).provenance)[0].wrong
