@@ -264,3 +264,10 @@ def test_a_real_camera_that_repeats_an_image_is_noticed(caplog: pytest.LogCaptur
 def test_recorded_and_rendered_images_may_repeat(origin: Origin) -> None:
     camera = opened([noise(0), noise(0)], origin)
     assert [camera.grab().reason for _ in range(2)] == [None, None]
+
+
+@pytest.mark.parametrize("level", [0, 255])
+def test_images_without_light_or_with_too_much_are_left_to_the_quality_gate(level: int) -> None:
+    """To restart the camera would not bring the light back."""
+    camera = opened([np.full((200, 100), level, np.uint8) for _ in range(2)], Origin.CAMERA)
+    assert [camera.grab().reason for _ in range(2)] == [None, None]
