@@ -220,6 +220,15 @@ def test_an_engine_without_its_camera_comes_up_and_says_so(tmp_path: Path) -> No
     assert "Traceback" not in errors
 
 
+def _read_to(process: "subprocess.Popen[str]", text: str, printed: list[str]) -> None:
+    """Read what a process prints, up to a line that contains a text or to the end."""
+    assert process.stdout is not None
+    for line in process.stdout:
+        printed.append(line)
+        if text in line:
+            return
+
+
 def test_the_station_of_the_demo_stays_up_for_a_plc(
     tmp_path: Path,
 ) -> None:
@@ -230,6 +239,8 @@ def test_the_station_of_the_demo_stays_up_for_a_plc(
         [*command, "--records", str(tmp_path / "records")], cwd=ROOT, stdout=subprocess.PIPE, text=True
     )
 
+    printed: list[str] = []
+
     async def conversation() -> list[bool]:
         line = SimulatedLine.at("127.0.0.1", port, accept_simulated=True)
         await line.connect(120.0)
@@ -238,7 +249,8 @@ def test_the_station_of_the_demo_stays_up_for_a_plc(
             accepted = []
             for number in range(len(truths)):
                 accepted.append((await line.inspect(f"TRY-{number}", 10.0)).accepted)
-                await line.meanwhile(asyncio.sleep(0.2))
+                # the result is printed when the next part lies in front of the camera, however late that is
+                await line.meanwhile(asyncio.to_thread(_read_to, station, f"serial TRY-{number}", printed))
             return accepted
         finally:
             await line.close()
@@ -247,7 +259,7 @@ def test_the_station_of_the_demo_stays_up_for_a_plc(
         accepted = asyncio.run(conversation())
         assert station.poll() is None, "it stays up"
         station.send_signal(signal.SIGINT)
-        out, _ = station.communicate(timeout=120)
+        out = "".join(printed) + station.communicate(timeout=120)[0]
     finally:
         station.kill()
         station.communicate()
