@@ -1,4 +1,4 @@
-"""Remembers on disk which part is being inspected, so that it gets its record even if the engine ends.
+"""Remembers on disk which parts are being inspected, so that they get their records if the engine ends.
 
 The file survives the end of the process, however it ends; only `Archive` uses it.
 """
@@ -18,10 +18,14 @@ MAX_BYTES = 10_000
 
 @dataclass(frozen=True, slots=True)
 class InProgress:
-    """A part that is being inspected, and the number that its record will have."""
+    """Parts that are being inspected or wait for it, and the number of the record of the first."""
 
-    part: Part
+    parts: tuple[Part, ...]
     inspection_id: int
+
+    def unrecorded(self, following: int) -> tuple[Part, ...]:
+        """Return the parts without a record, if the next record will have the number `following`."""
+        return self.parts[max(following - self.inspection_id, 0) :]
 
 
 _ADAPTER = TypeAdapter(InProgress)
@@ -42,6 +46,11 @@ def announced(folder: Path) -> InProgress | None:
         return None
 
 
-def done(folder: Path) -> None:
-    """Remove the file. Raises OSError."""
-    (folder / NAME).unlink(missing_ok=True)
+def done(folder: Path, following: int) -> None:
+    """Remove the file unless it names a part without a record; `following`: number of the next record.
+
+    Raises OSError.
+    """
+    found = announced(folder)
+    if found is not None and not found.unrecorded(following):
+        (folder / NAME).unlink()

@@ -74,8 +74,9 @@ class Archive:
             self._index = open_index(self._folder)
             self._following = self._next_id()
             """Number of the next record."""
-            self.interrupted = self._interrupted()
-            """Part that was being inspected when the engine ended, and has no record."""
+            found = announced(self._folder)
+            self.interrupted = () if found is None else found.unrecorded(self._following)
+            """Parts that were being inspected when the engine ended, and have no record."""
             self._chain = last_link(self._index)
             clear_the_way(self._folder, self._following)
         except (OSError, sqlite3.Error, UnicodeError, RecordError) as error:
@@ -85,17 +86,17 @@ class Archive:
             raise error if isinstance(error, RecordError) else self._unusable(error) from None
         self._encoder = ThreadPoolExecutor(1, "encode")
 
-    def _interrupted(self) -> Part | None:
-        found = announced(self._folder)
-        return None if found is None or found.inspection_id < self._following else found.part
-
-    def announce(self, part: Part) -> None:
+    def announce(self, part: Part, *, waits: bool = False) -> None:
         """Remember that a part is being inspected: after a sudden end the next start records it as ERROR.
 
-        May be called from any thread. Raises RecordError.
+        `waits`: the part comes after the one that is being inspected. May be called from any thread. Raises
+        RecordError.
         """
+        following = self._following
+        before = announced(self._folder) if waits else None
+        parts = () if before is None else before.unrecorded(following)
         try:
-            announce(self._folder, InProgress(part, self._following))
+            announce(self._folder, InProgress((*parts, part), following))
         except OSError as error:
             raise RecordError(f"{self._folder}: the part in progress cannot be noted: {error}") from None
 
@@ -216,8 +217,8 @@ class Archive:
         write_whole(self._folder / record_file, text, durable=True)
         sync_folder(day)
         self._list(record, record_file, hashlib.sha256(text).hexdigest(), state)
-        with suppress(OSError):  # its number says that the part has its record
-            done(self._folder)
+        with suppress(OSError):  # the numbers say which parts have their records
+            done(self._folder, self._following)
         return record
 
     def _list(self, record: Record, record_file: str, sha256: str, frame_state: str) -> None:

@@ -28,6 +28,8 @@ from station.plc.port import Command, Line, Trigger
 
 log = logging.getLogger("weldgate.cycle")
 
+PART_GRACE_S = 10.0
+"""Time that a part may take beyond grab, deadline and the wait for the PLC before the cycle hangs."""
 WAIT_S = 0.1
 """Longest wait for a trigger or command before the other tasks have their turn."""
 
@@ -49,13 +51,9 @@ class Cycle:
         alarm_log: AlarmLog,
         clock_in_doubt: Callable[[], bool] = lambda: False,
         check_ins: CheckIns | None = None,
-        part_s: float = IDLE_S,
     ) -> None:
-        """`origin`: origin of the camera's frames; `loaded`: the recipe to start with.
-
-        `part_s`: time after which the cycle hangs if a part is not done.
-        """
-        self._check_ins, self._part_s = check_ins or CheckIns(), part_s
+        """`origin`: origin of the camera's frames; `loaded`: the recipe to start with."""
+        self._check_ins = check_ins or CheckIns()
         self._clock_in_doubt = clock_in_doubt
         self._camera = camera
         self._line = line
@@ -111,10 +109,12 @@ class Cycle:
         """Note on disk a trigger that the cycle never took, as it hangs; call from another thread."""
         request = self._line.next_request(0)
         if isinstance(request, Trigger):
-            note_in_progress(self._archive, self._procedure.part_of(request))
+            note_in_progress(self._archive, self._procedure.part_of(request), waits=True)
 
     def _serve(self, trigger: Trigger) -> None:
-        self._check_ins.expect("cycle", self._part_s)
+        settings = self._active.settings
+        part_s = settings.camera.grab_s + 2 * settings.plc.deadline_ms / 1000 + PART_GRACE_S
+        self._check_ins.expect("cycle", part_s)
         failed = f"part of trigger {trigger.trigger_id} was not answered"
         answered = self._guarded(partial(self._procedure.inspect_part, trigger, self._loaded), failed)
         if not answered and self._line.awaits_result(trigger):

@@ -59,21 +59,21 @@ def mark_shown(archive: Archive, record: Record, shown: bool) -> None:
         log.error("%s", error)
 
 
-def note_in_progress(archive: Archive, part: Part) -> None:
-    """Note on disk that a part is being inspected."""
+def note_in_progress(archive: Archive, part: Part, *, waits: bool = False) -> None:
+    """Note on disk that a part is being inspected, or `waits` for the one that is."""
     try:
-        archive.announce(part)
+        archive.announce(part, waits=waits)
     except RecordError as error:
         log.error("%s", error)
 
 
-def record_interrupted(archive: Archive, provenance: Provenance) -> Record | None:
-    """Return the record, ERROR, of the part during which the engine ended; None if there was no part."""
-    part = archive.interrupted
-    if part is None:
-        return None
-    inspection = Inspection.error(Reason.INTERNAL, detail=INTERRUPTED)
-    record = write_record(archive, archive.begin(None), inspection, part, provenance=provenance)
-    archive.interrupted = None
-    log.error("part %d, %s: %s", record.inspection_id, part.serial, INTERRUPTED)
-    return record
+def record_interrupted(archive: Archive, provenance: Provenance) -> list[Record]:
+    """Return the records, ERROR, of the parts during which the engine ended."""
+    records = []
+    for part in archive.interrupted:
+        inspection = Inspection.error(Reason.INTERNAL, detail=INTERRUPTED)
+        record = write_record(archive, archive.begin(None), inspection, part, provenance=provenance)
+        log.error("part %d, %s: %s", record.inspection_id, part.serial, INTERRUPTED)
+        records.append(record)
+    archive.interrupted = ()
+    return records

@@ -5,6 +5,7 @@ import threading
 from collections.abc import Callable
 from contextlib import ExitStack, closing
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -45,8 +46,6 @@ from station.settings.model import Settings
 
 log = logging.getLogger("weldgate")
 
-PART_GRACE_S = 10.0
-"""Time that a part may take beyond grab, deadline and the wait for the PLC before the cycle hangs."""
 CHECKS_READ = 50
 """Number of newest checks of each master that are read at the start."""
 
@@ -90,7 +89,6 @@ def make_cycle(
         alarm_log=alarm_log,
         clock_in_doubt=clock_in_doubt,
         check_ins=check_ins,
-        part_s=settings.camera.grab_s + 2 * settings.plc.deadline_ms / 1000 + PART_GRACE_S,
     )
 
 
@@ -131,9 +129,14 @@ def run_engine(path: Path, at_end: Callable[[], None] = nothing) -> None:
     """
     settings = load(path)
     stop, check_ins = threading.Event(), CheckIns()
+    at_hang: list[Callable[[], object]] = [at_end]
+
+    def last_steps() -> None:
+        for step in at_hang:
+            step()
 
     with ExitStack() as stack:
-        stack.enter_context(StopSignals(stop, at_end))
+        stack.enter_context(StopSignals(stop, last_steps))
         problems: list[str] = []
 
         def attempt(make: Callable[[], Opened]) -> Opened | None:
@@ -189,9 +192,9 @@ def run_engine(path: Path, at_end: Callable[[], None] = nothing) -> None:
             line.port,
         )
         alarm_log = stack.enter_context(closing(AlarmLog(settings.archive.folder, check_ins)))
-        if (interrupted := record_interrupted(archive, loaded.provenance)) is not None:
+        for record in record_interrupted(archive, loaded.provenance):
             code = ERROR_NOT_JUDGED + Reason.INTERNAL.code
-            alarm_log.add_event(code, f"part {interrupted.inspection_id}, {INTERRUPTED}")
+            alarm_log.add_event(code, f"part {record.inspection_id}, {INTERRUPTED}")
         active, orders = ActiveSettings(settings, lambda: load(path), make_camera), OrderQueue()
         requests = stack.enter_context(
             closing(OperatorRequests(server, path, active, orders.put, check_ins=check_ins))
@@ -212,11 +215,7 @@ def run_engine(path: Path, at_end: Callable[[], None] = nothing) -> None:
             clock_in_doubt=lambda: keeper is not None and keeper.clock_in_doubt,
             check_ins=check_ins,
         )
-
-        def last_steps() -> None:
-            at_end()
-            cycle.note_unserved()
-            append(settings.archive.folder, Kind.ALARM, "station", f"16#{ENGINE_HUNG:04X}")
-
+        alarm = partial(append, settings.archive.folder, Kind.ALARM, "station", f"16#{ENGINE_HUNG:04X}")
+        at_hang += [cycle.note_unserved, alarm]
         stack.enter_context(closing(Watchdog(check_ins, last_steps)))
         cycle.run(stop)

@@ -185,6 +185,23 @@ def test_a_part_during_which_the_engine_ended_is_recorded_as_error_once(
     assert (records[1].trigger_id, records[1].purpose) == (7, purpose)
 
 
+@pytest.mark.parametrize("recorded", [0, 1, 2])
+def test_a_part_that_waits_for_a_hanging_one_is_recorded_too(tmp_path: Path, recorded: int) -> None:
+    """The first is answered at its deadline, so that the PLC may begin the next while the cycle hangs."""
+    with closing(opened(tmp_path)) as archive:
+        commit(archive, "before")
+        archive.announce(Part("CELL-7", 7, Origin.CAMERA))
+        archive.announce(Part("CELL-8", 8, Origin.CAMERA), waits=True)
+        for serial in ("CELL-7", "CELL-8")[:recorded]:
+            commit(archive, serial)
+        assert (tmp_path / NAME).exists() == (recorded < 2)
+    for _ in range(2):
+        with closing(opened(tmp_path)) as archive:
+            record_interrupted(archive, provenance())
+    serials = [entry.record.serial for entry in read_records(tmp_path) if entry.record is not None]
+    assert serials == ["before", "CELL-7", "CELL-8"]
+
+
 def test_a_part_with_a_record_is_not_recorded_again(tmp_path: Path) -> None:
     with closing(opened(tmp_path)) as archive:
         archive.announce(PART)
@@ -193,14 +210,14 @@ def test_a_part_with_a_record_is_not_recorded_again(tmp_path: Path) -> None:
         assert not (tmp_path / NAME).exists()
         (tmp_path / NAME).write_bytes(announced)  # the engine ended between the record and this file
     with closing(opened(tmp_path)) as archive:
-        assert archive.interrupted is None
+        assert archive.interrupted == ()
 
 
 @pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b"\x00\xff", b'{"part": 1, "inspection_id": 1e9}'])
 def test_a_damaged_note_stops_nothing(tmp_path: Path, content: bytes) -> None:
     (tmp_path / NAME).write_bytes(content)
     with closing(opened(tmp_path)) as archive:
-        assert archive.interrupted is None
+        assert archive.interrupted == ()
 
 
 def test_a_part_can_be_noted_from_another_thread(tmp_path: Path) -> None:
@@ -210,4 +227,4 @@ def test_a_part_can_be_noted_from_another_thread(tmp_path: Path) -> None:
         thread.start()
         thread.join()
     with closing(opened(tmp_path)) as archive:
-        assert archive.interrupted == PART
+        assert archive.interrupted == (PART,)

@@ -18,6 +18,7 @@ from station.channel.events import Event, PartEvent, SetupImageEvent, StatusEven
 from station.domain import Frame, Image, Verdict
 from station.engine.active_settings import ActiveSettings
 from station.engine.alarm_log import AlarmLog
+from station.engine.check_ins import IDLE_S, CheckIns
 from station.engine.listener import Listener
 from station.engine.orders import Order, OrderQueue, Reload, ResetCounts, Service, TestImage
 from station.engine.startup import make_camera, make_cycle
@@ -234,6 +235,26 @@ def test_changed_settings_are_used_at_once_and_refused_ones_are_an_alarm(
     running.ask(Reload())
     running.until(lambda e: Alarm.SETTINGS_REFUSED not in e.alarms and e.config_crc == before.config_crc)
     assert running.part("AS BEFORE", good).verdict is VerdictCode.OK
+
+
+def test_the_time_after_which_a_part_hangs_follows_a_reload(
+    running: Running, frames: dict[str, Image], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A longer time-out of the camera must not look like a cycle that hangs."""
+    good, limits_s = frames[label_with("OK")["frame"]], list[float]()
+
+    def noting(self: CheckIns, name: str, within_s: float) -> None:
+        if name == "cycle" and within_s != IDLE_S:
+            limits_s.append(within_s)
+
+    monkeypatch.setattr(CheckIns, "expect", noting)
+    before = running.until(lambda e: e.camera_there)
+    assert running.part("ONE", good).verdict is VerdictCode.OK
+    running.adjust({"camera": {"timeout_ms": 5500, "exposure_us": 1500.0}})
+    running.ask(Reload())
+    running.until(lambda e: e.camera_there and e.config_crc != before.config_crc)
+    assert running.part("TWO", good).verdict is VerdictCode.OK
+    assert limits_s[1] == pytest.approx(limits_s[0] + 2 * (5.5 - 4.0))
 
 
 def test_a_part_is_never_judged_with_an_exposure_that_was_tried_by_hand(
