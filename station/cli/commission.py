@@ -20,8 +20,7 @@ def commission(settings: Path) -> int:
             "of the engine, or replace the link by the folder"
         )
     code = make_code(keys)
-    if archive.exists():
-        _give(keys, archive.stat())
+    _give(keys, (archive if archive.exists() else settings).stat())
     print(f"commissioning code: {code}")
     print("Enter it in the window (Setup, Login) with a new name and PIN: it makes one administrator.")
     print(f"The keys of this installation are in {keys}. Back the folder up, and keep it secret.")
@@ -33,7 +32,7 @@ def _is_root() -> bool:
 
 
 def _give(keys: Path, owner: os.stat_result) -> None:
-    """Give the keys to the account that owns the archive, which is the engine's, where root made them.
+    """Give the keys to the engine's account, which owns the archive or the settings, where root made them.
 
     That account may own the folder around and exchange what lies there: no link is followed, and a file with
     a second name elsewhere is left alone.

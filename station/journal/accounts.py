@@ -26,7 +26,10 @@ WRONG_CODE = "wrong commissioning code: 'weldgate commission' makes one"
 """Refusal of a code."""
 NO_USERS = "there are no users yet: enter the code that 'weldgate commission' makes"
 """Refusal of a login without a code at a station without users."""
-TOO_SHORT = "this PIN is too short for the level: an administrator must set one of 6 digits"
+TOO_SHORT = (
+    "this PIN is too short for the level: an administrator must set one of 6 digits; "
+    "'weldgate commission' makes a new administrator"
+)
 """Refusal of a PIN of an earlier version."""
 _USER = TypeAdapter(StoredUser)
 
@@ -108,6 +111,7 @@ class Accounts:
 
     def commission(self, name: str, pin: str, code: str, *, source: str = "") -> User:
         """Add an administrator by a commissioning code, which is used up. Raises LoginError, RecordError."""
+        name = name.strip()
         with self._lock:
             self._tries.begin(name, bucket=CODE)
             if name in stored_users(self._folder):

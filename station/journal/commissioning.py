@@ -10,6 +10,7 @@ import secrets
 from pathlib import Path
 
 from station.errors import LoginError
+from station.files.durable import sync_folder
 from station.files.private import read_private, write_private
 
 NAME = "commissioning.json"
@@ -45,6 +46,7 @@ def use_up(keys: Path) -> None:
     """Delete the code: it was used. Raises LoginError if it cannot be deleted; then it must not be used."""
     try:
         (keys / NAME).unlink()
+        sync_folder(keys)
     except OSError as error:
         raise LoginError(
             f"{keys / NAME}: cannot be deleted ({error.strerror}); nothing was changed"

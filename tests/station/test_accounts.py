@@ -275,6 +275,17 @@ def test_codes_cannot_be_guessed_planted_or_kept(tmp_path: Path, clock: Clock) -
         accounts.commission("Eve", PIN, make_code(keys))
 
 
+@pytest.mark.parametrize("name", ["", "  ", "a\nb", "x" * 41, " Ada "])
+def test_a_name_that_cannot_be_used_does_not_use_up_the_code(tmp_path: Path, clock: Clock, name: str) -> None:
+    accounts, keys = Accounts(tmp_path, tmp_path / "keys", clock=clock), tmp_path / "keys"
+    accounts.commission("Ada", PIN, make_code(keys))
+    code = make_code(keys)
+    with pytest.raises(LoginError, match=r"a name of 1 to 40|this name exists"):
+        accounts.commission(name, "999999", code)
+    assert accounts.log_in("Ada", PIN).level is Level.ADMIN
+    assert accounts.commission(" Bea ", PIN, code).name == "Bea"
+
+
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"salt": "x", "hash": ""}', '{"salt": 1, "hash": 2}'])
 def test_a_damaged_code_is_said(tmp_path: Path, content: str) -> None:
     keys = tmp_path / "keys"
@@ -334,3 +345,12 @@ def test_root_gives_no_files_away_that_the_account_of_the_engine_has_linked(
     assert main(["commission", "-c", str(path)]) == (2 if linked == "folder" else 0)
     assert secret.stat().st_uid == 0
     assert [file.name for file in secret.parent.iterdir()] == ["shadow"]
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
+def test_root_gives_the_keys_to_the_owner_of_the_settings_before_there_is_an_archive(tmp_path: Path) -> None:
+    path = tmp_path / "station.toml"
+    path.write_text(f'{GOOD}[archive]\nfolder = "{tmp_path}/own"\n')
+    os.chown(path, 65534, 65534)
+    assert main(["commission", "-c", str(path)]) == 0
+    assert {place.stat().st_uid for place in (keys_folder(path), *keys_folder(path).iterdir())} == {65534}

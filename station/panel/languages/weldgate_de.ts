@@ -654,8 +654,8 @@
         <translation>es gibt noch keine Benutzer: den Code eingeben, den „weldgate commission“ erzeugt</translation>
     </message>
     <message>
-        <source>this PIN is too short for the level: an administrator must set one of 6 digits</source>
-        <translation>diese PIN ist zu kurz für die Stufe: ein Administrator muss eine mit 6 Ziffern setzen</translation>
+        <source>this PIN is too short for the level: an administrator must set one of 6 digits; &apos;weldgate commission&apos; makes a new administrator</source>
+        <translation>diese PIN ist zu kurz für die Stufe: ein Administrator muss eine mit 6 Ziffern setzen; „weldgate commission“ macht einen neuen Administrator</translation>
     </message>
     <message>
         <source>this name exists: enter another one for the new administrator</source>
