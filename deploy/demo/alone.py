@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 from rich.console import Console
 
+from deploy.demo.hints import server_hints
 from deploy.demo.stage import Stage, last_line
 from deploy.demo.station import shipped_parts
 from deploy.demo.summary import DemoPart
@@ -35,17 +36,6 @@ START_S = 45.0
 """Time within which the station must be up."""
 
 
-def hints(host: str, port: int) -> str:
-    """Return what an integrator must know before the first part."""
-    return (
-        f"station on {host}, port {port}: the PLC connects to it (Modbus TCP, any unit id)\n"
-        "  command window: registers 0 to 22, status window: from 100; the first hour: deploy/plc/README.md\n"
-        "  block: set AcceptSimulated := TRUE, or each part is refused with 12 (emulated camera)\n"
-        "  block: copy CONFIG_CRC (register 112, Info.CONFIG_CRC) to Crc, or each part is refused with 9\n"
-        "a new part lies in front of the camera at each trigger; Ctrl-C ends"
-    )
-
-
 async def stand_alone(stage: Stage, host: str, port: int, console: Console) -> None:
     """Show a new part at each trigger until cancelled. Raises WeldgateError if the engine stops."""
     parts = itertools.cycle(shipped_parts())
@@ -54,7 +44,7 @@ async def stand_alone(stage: Stage, host: str, port: int, console: Console) -> N
     client = ModbusClient("127.0.0.1" if host in ("0.0.0.0", "::") else host, port)
     try:
         await _connect(client, stage)
-        console.print(hints(host, port), highlight=False, soft_wrap=True)
+        console.print(server_hints(host, port), highlight=False, soft_wrap=True)
         await _watch(client, stage, part, parts=parts, console=console)
     finally:
         client.close()

@@ -20,17 +20,6 @@ MOST_EDGES = 10_000
 """Number of edges that are taken in at once."""
 
 
-def client_hints(host: str, port: int) -> str:
-    """Return what an integrator must know before the first part."""
-    return (
-        f"the station connects to the PLC at {host}, port {port} (Modbus TCP, unit 1), and tries again until "
-        "it answers\n"
-        "  block: set AcceptSimulated := TRUE, or each part is refused with 12 (emulated camera)\n"
-        "  block: copy CONFIG_CRC (Info.CONFIG_CRC) to Crc, or each part is refused with 9\n"
-        "a new part lies in front of the camera at each trigger; Ctrl-C ends"
-    )
-
-
 def follow_bus(stage: Stage, records: Path, console: Console) -> None:
     """Show a new part at each trigger until interrupted. Raises WeldgateError if the engine stops."""
     parts = itertools.cycle(shipped_parts())

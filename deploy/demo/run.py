@@ -19,7 +19,8 @@ from pathlib import Path
 from rich.console import Console
 
 from deploy.demo.alone import stand_alone
-from deploy.demo.follow import client_hints, follow_bus
+from deploy.demo.follow import follow_bus
+from deploy.demo.hints import client_hints
 from deploy.demo.ports import free_ports
 from deploy.demo.stage import Stage, has_display, last_line, staged
 from deploy.demo.station import running, shipped_parts, station_toml

@@ -18,6 +18,8 @@ from deploy.demo.station import SERIAL, running
 from deploy.demo.summary import DemoPart
 from station.errors import WeldgateError
 from station.files.installation import room_command
+from station.journal.commissioning import make_code
+from station.settings.keys import keys_folder
 from synth.camera.feed import Feed
 from synth.errors import SynthError
 
@@ -71,7 +73,14 @@ def staged(settings: str, window: bool, console: Console) -> Iterator[Stage]:
             if panel.poll() is not None:
                 reason = last_line(panel_log)
                 console.print(f"[yellow]window could not be opened, continuing without it: {reason}[/]")
+            else:
+                console.print(login_hint(make_code(keys_folder(file))), highlight=False, soft_wrap=True)
         yield Stage(folder, feed, engine, log)
+
+
+def login_hint(code: str) -> str:
+    """Return how to log in at the window of this demo, whose keys end with it."""
+    return f"to log in at the window: Setup, Login, code {code}, with a new name and a PIN of six digits"
 
 
 def has_display() -> bool:
