@@ -28,8 +28,8 @@ def move_aside(folder: Path, path: Path) -> None:
     log.warning("%s was left behind without an entry in the index: moved to %s", path, target)
 
 
-def numbered_files(folder: Path) -> Iterator[tuple[int, Path]]:
-    """Yield all frames and records with their numbers; the clock may have been wrong, so all days count."""
+def numbered_files(folder: Path) -> Iterator[tuple[int, str]]:
+    """Yield number and path of all frames and records; the clock may have been wrong, so all days count."""
     for day in folder.glob("????-??-??"):
         if not day.is_dir():
             continue
@@ -37,7 +37,7 @@ def numbered_files(folder: Path) -> Iterator[tuple[int, Path]]:
             for entry in entries:
                 stem, _, suffix = entry.name.partition(".")
                 if suffix in ("json", "png") and stem.isdecimal() and stem.isascii():
-                    yield int(stem), Path(entry.path)
+                    yield int(stem), entry.path
 
 
 def clear_the_way(folder: Path, following: int) -> None:
@@ -45,7 +45,7 @@ def clear_the_way(folder: Path, following: int) -> None:
 
     Raises RecordError if the index is older than the files, whose numbers would be used again, and OSError.
     """
-    last, left = 0, list[Path]()
+    last, left = 0, list[str]()
     for number, path in numbered_files(folder):
         last = max(last, number)
         if number == following:
@@ -56,4 +56,4 @@ def clear_the_way(folder: Path, following: int) -> None:
             "restore index.sqlite, or set another archive.folder"
         )
     for path in sorted(left):
-        move_aside(folder, path)
+        move_aside(folder, Path(path))

@@ -12,6 +12,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from station.files.private import close_to
+
 if TYPE_CHECKING:
     from filelock import BaseFileLock
 
@@ -54,11 +56,8 @@ def turn(path: Path, patience_s: float) -> Iterator[None]:
 
 def _close_to_others(path: Path) -> None:
     """Take the right to read a lock file, which is enough to hold its lock, from who may not write it."""
-    with suppress(OSError):  # it belongs to another account, which closes it
-        mode = stat.S_IMODE(path.stat().st_mode)
-        closed = mode & ~(0o007 if mode & stat.S_IWGRP else 0o077)
-        if closed != mode:
-            path.chmod(closed)
+    with suppress(OSError):
+        close_to(path, 0o007 if path.stat().st_mode & stat.S_IWGRP else 0o077)
 
 
 class _Waiting:

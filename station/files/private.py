@@ -1,4 +1,4 @@
-"""Files that only the account of the engine may read and write: keys and codes of an installation."""
+"""Files that other accounts may not use: keys and codes of an installation, locks, databases."""
 
 import os
 import stat
@@ -13,6 +13,14 @@ OTHERS = 0o077
 """Bits of a mode that admit other accounts."""
 MAX_BYTES = 65_536
 """Maximum length of such a file."""
+
+
+def close_to(path: Path, bits: int) -> None:
+    """Take these bits from the mode of a file; one of another account, which must close it, stays."""
+    with suppress(OSError):
+        mode = stat.S_IMODE(path.stat().st_mode)
+        if mode & bits:
+            path.chmod(mode & ~bits)
 
 
 def write_private(path: Path, data: bytes, *, replace: bool = True) -> None:

@@ -8,7 +8,6 @@ mode or is recovered, and it asks so rarely that one of many writers may never f
 import os
 import random
 import sqlite3
-import stat
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from station.files.lock import turn
+from station.files.private import close_to
 
 MODE, OTHERS = 0o640, 0o007
 """Mode of a new database, and the bits that none has."""
@@ -84,11 +84,7 @@ def _close_to_others(path: Path) -> None:
     with suppress(OSError):  # what is wrong with the file is said by SQLite
         os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, MODE))
     for suffix in ("", "-wal", "-shm"):
-        with suppress(OSError):
-            file = path.with_name(path.name + suffix)
-            mode = stat.S_IMODE(file.stat().st_mode)
-            if mode & OTHERS:
-                file.chmod(mode & ~OTHERS)
+        close_to(path.with_name(path.name + suffix), OTHERS)
 
 
 @contextmanager
