@@ -170,8 +170,8 @@ class PylonCamera:
         if clock is not None and is_impossible(stamp(result), clock, time.monotonic()):
             raise FrameUnrequested(f"{name}: the frame's time stamp lies in the future; its clock was set")
         if (result.Width, result.Height) != (settings.width_px, settings.height_px):
-            expected = f"{settings.width_px} x {settings.height_px}"
-            size = f"{result.Width} x {result.Height} px instead of {expected} px"
+            wanted = f"{settings.width_px} x {settings.height_px}"
+            size = f"{result.Width} x {result.Height} px instead of {wanted} px"
             raise FrameDamaged(f"{name}: frame is {size}", wrong_size=True)
         if result.GetPixelType() != pylon.PixelType_Mono8:
             raise FrameDamaged(f"{name}: frame is not Mono8")

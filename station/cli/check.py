@@ -4,6 +4,7 @@ import socket
 import time
 from collections.abc import Iterator
 from contextlib import closing, suppress
+from functools import partial
 from pathlib import Path
 
 from station.archive.room import Room
@@ -29,10 +30,9 @@ def check(path: Path) -> Iterator[tuple[str, str | None]]:
         return
     yield "settings", None
     yield _scale(settings), None
-    for name, probe in (("model", _model), ("archive", _archive), ("camera", _camera), ("PLC", _plc)):
+    archive = partial(_archive, path)
+    for name, probe in (("model", _model), ("archive", archive), ("camera", _camera), ("PLC", _plc)):
         try:
-            if probe is _archive:
-                check_archive(path, settings.archive.folder)
             probe(settings)
         except WeldgateError as error:
             yield name, str(error)
@@ -75,7 +75,8 @@ def _model(settings: Settings) -> None:
         prepare(settings, number)
 
 
-def _archive(settings: Settings) -> None:
+def _archive(path: Path, settings: Settings) -> None:
+    check_archive(path, settings.archive.folder)
     archive = Archive(settings.archive)
     try:
         room = archive.room()

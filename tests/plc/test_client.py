@@ -6,17 +6,19 @@ import socket
 import sys
 import threading
 import time
-from contextlib import suppress
+from collections.abc import Callable, Sequence
+from contextlib import closing, suppress
 
 import pytest
 
 from deploy.chaos.judge import WELL, Judge, judged
 from deploy.demo.ports import free_ports
 from station.errors import LineError, SettingsError
-from station.plc.line import make_line
+from station.plc.line import ModbusLine, make_line
 from station.plc.map.registers import COMMAND_WORDS, STATUS_START, STATUS_WORDS, Offline, VerdictCode
 from station.plc.port import Result, Trigger
 from station.plc.simulated.line import Answer, SimulatedLine
+from station.plc.simulated.windows import Windows
 from station.plc.wire.windows import RESULT_BITS, make_wire
 from station.settings.model import PlcSettings
 from station.settings.plc import S7Settings
@@ -69,6 +71,33 @@ class Proxy:
                     station.sendall(answer)
 
 
+def passed(
+    line: ModbusLine,
+    windows: Windows,
+    decide: Callable[[Trigger], Result],
+    serials: Sequence[str],
+    *,
+    connect_s: float,
+    window_s: float,
+) -> list[Answer]:
+    """Pass parts through a line that starts once the PLC is there; return what the PLC got."""
+
+    async def conversation() -> list[Answer]:
+        plc = SimulatedLine(windows, accept_simulated=False)
+        await plc.connect(connect_s)
+        line.start()
+        try:
+            return [await plc.inspect(serial, window_s) for serial in serials]
+        finally:
+            await plc.close()
+
+    try:
+        with Judge(LateStart(line), decide):  # type: ignore[arg-type]
+            return asyncio.run(conversation())
+    finally:
+        line.stop()
+
+
 @pytest.fixture
 def ports() -> int:
     return free_ports(1)[0]
@@ -95,21 +124,9 @@ def test_a_write_that_is_cut_anywhere_never_passes_a_part_that_is_not_ok(
         verdict = VerdictCode.NOK if trigger.serial.startswith("BAD") else VerdictCode.OK
         return judged(trigger, verdict)
 
-    async def conversation() -> list[Answer]:
-        plc = SimulatedLine(windows, accept_simulated=False)
-        await plc.connect(5)
-        line.start()
-        try:
-            return [await plc.inspect(serial, 3.0) for serial in ("GOOD-1", "BAD-2", "GOOD-3", "GOOD-4")]
-        finally:
-            await plc.close()
-
-    try:
-        with Judge(LateStart(line), decide):  # type: ignore[arg-type]
-            answers = asyncio.run(conversation())
-    finally:
-        line.stop()
-        proxy.close()
+    serials = ("GOOD-1", "BAD-2", "GOOD-3", "GOOD-4")
+    with closing(proxy):
+        answers = passed(line, windows, decide, serials, connect_s=5, window_s=3.0)
     assert not answers[1].accepted
     assert [a.accepted for a in (answers[0], answers[2], answers[3])].count(True) >= 2, answers
     assert answers[3].accepted
@@ -243,20 +260,8 @@ def test_parts_pass_on_their_own_verdict_alone(peer: Peer, ports: int, low_word_
     def decide(trigger: Trigger) -> Result:
         return judged(trigger, VerdictCode.NOK if trigger.trigger_id % 3 == 0 else VerdictCode.OK)
 
-    async def conversation() -> list[Answer]:
-        plc = SimulatedLine(windows, accept_simulated=False)
-        await plc.connect(50)
-        line.start()
-        try:
-            return [await plc.inspect(f"P-{number}", 30.0) for number in range(1, 25)]
-        finally:
-            await plc.close()
-
-    try:
-        with Judge(LateStart(line), decide):  # type: ignore[arg-type]
-            answers = asyncio.run(conversation())
-    finally:
-        line.stop()
+    serials = [f"P-{number}" for number in range(1, 25)]
+    answers = passed(line, windows, decide, serials, connect_s=50, window_s=30.0)
     assert [answer.accepted for answer in answers] == [answer.trigger_id % 3 != 0 for answer in answers]
     assert [answer.verdict for answer in answers].count(VerdictCode.NOK) == 8
     assert all(answer.handshake_complete for answer in answers)
