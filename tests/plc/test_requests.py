@@ -224,7 +224,7 @@ def test_check_names_an_empty_list_of_peers(
     section: str, said: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for probe in ("_model", "_archive", "_camera", "_plc"):
-        monkeypatch.setattr(f"station.cli.check.{probe}", lambda _: None)
+        monkeypatch.setattr(f"station.cli.check.{probe}", lambda *_: None)
     path = tmp_path / "station.toml"
     path.write_text(f'[camera]\nkind = "replay"\nfolder = "images"\n[plc]\n{section}\n')
     found = dict(check(path))
